@@ -26,6 +26,11 @@ Examples:
   g7 gen il tank --style dolog80  Instruction List: steps that are set and reset
   g7 gen ld tank -o out           Ladder as PLCopen XML: out/tank.xml
   g7 gen ld tank --style drawn    Ladder as a picture (SVG)
+  g7 gen awl tank -o out          S7-300, S7-400: out/tank.awl and its symbols out/tank.asc
+  g7 gen scl tank -o out          TIA Portal: out/tank.scl and its tags out/tank.tags.xml
+  g7 gen twincat tank -o out      TwinCAT 3: out/tank.TcPOU
+  g7 gen logix tank -o out        Logix 5000: out/tank.L5X, a program
+  g7 gen unity tank -o out        Control Expert, Unity Pro: out/tank.XST, a section
 
 The code does what `g7 run` does, scan by scan. What a language cannot say is
 reported with its place, and nothing is written then.
@@ -76,6 +81,21 @@ enum Words {
         #[command(flatten)]
         what: Plc,
     },
+    /// AWL (STL) source for S7-300 and S7-400, with a symbol table.
+    #[command(after_help = EXAMPLES)]
+    Awl(Plc),
+    /// SCL source for TIA Portal (S7-1200, S7-1500), with a table of PLC tags.
+    #[command(after_help = EXAMPLES)]
+    Scl(Plc),
+    /// A POU for TwinCAT 3 in Structured Text (`.TcPOU`).
+    #[command(after_help = EXAMPLES)]
+    Twincat(Plc),
+    /// A program for Logix 5000 with a routine in Structured Text (L5X).
+    #[command(after_help = EXAMPLES)]
+    Logix(Plc),
+    /// A section for Control Expert or Unity Pro in Structured Text (XST).
+    #[command(after_help = EXAMPLES)]
+    Unity(Plc),
 }
 
 /// The arguments for C and Rust.
@@ -210,6 +230,11 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
         Words::Il { style: IlStyle::Dolog80, what } => what.print(plc::Form::Dolog80, "il"),
         Words::Ld { style: LdStyle::Xml, what } => what.print(plc::Form::Ld, "xml"),
         Words::Ld { style: LdStyle::Drawn, what } => what.print(plc::Form::Drawing, "svg"),
+        Words::Awl(what) => what.print(plc::Form::Awl, "awl"),
+        Words::Scl(what) => what.print(plc::Form::Scl, "scl"),
+        Words::Twincat(what) => what.print(plc::Form::TwinCat, "TcPOU"),
+        Words::Logix(what) => what.print(plc::Form::Logix, "L5X"),
+        Words::Unity(what) => what.print(plc::Form::Unity, "XST"),
     }
 }
 
@@ -236,11 +261,12 @@ impl Tongue {
             }
             Tongue::Plc { form, ending, ascii } => {
                 let printed = plc::print(compiled, form, name, source)?;
-                let file = File {
+                let beside = printed.beside.into_iter();
+                let all = beside.chain([(ending, printed.text)]).map(|(ending, text)| File {
                     name: format!("{name}.{ending}"),
-                    text: if ascii { plc::ascii(&printed.text) } else { printed.text },
-                };
-                Ok(Written { files: vec![file], problems: printed.problems, sizes: None })
+                    text: if ascii { plc::ascii(&text) } else { text },
+                });
+                Ok(Written { files: all.collect(), problems: printed.problems, sizes: None })
             }
         }
     }

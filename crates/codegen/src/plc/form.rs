@@ -215,6 +215,23 @@ pub(crate) struct Declared {
     pub(crate) note: String,
 }
 
+impl Declared {
+    /// The address of one variable in the inputs, outputs or memory of a controller, as `I0.0` or `QW4`, where its
+    /// note has one, and the rest of this note.
+    pub(crate) fn addressed(&self) -> Option<(String, &str)> {
+        let (_, behind) = self.note.split_once("at %")?;
+        let (address, note) = behind.split_once(": ").unwrap_or((behind, ""));
+        let digits = address.find(|c: char| c.is_ascii_digit())?;
+        let (area, place) = address.split_at_checked(digits)?;
+        let area = area.to_ascii_uppercase().replace('X', "");
+        let mut letters = area.chars();
+        let known = letters.next().is_some_and(|c| "IQM".contains(c)) && "BWD".contains(letters.as_str());
+        let fits =
+            area.len() <= 2 && place.len() <= 7 && place.chars().all(|c| c.is_ascii_digit() || c == '.');
+        (known && fits && self.elements == 1).then(|| (format!("{area}{place}"), note))
+    }
+}
+
 /// The whole of it.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Block {

@@ -71,7 +71,7 @@ impl Memories {
         e: &Equations,
         name: &str,
         calls: &HashSet<MemoryId>,
-        signals: HashMap<WatchId, String>,
+        (signals, longest): (HashMap<WatchId, String>, usize),
     ) -> (String, Memories) {
         let mut m = Memories {
             names: vec![String::new(); e.memories.len()],
@@ -80,7 +80,7 @@ impl Memories {
             steps: Vec::new(),
             shown: Vec::new(),
             declared: Vec::new(),
-            given: Names::default(),
+            given: Names::new(longest),
         };
         let name = m.given.variable(name);
         for word in FIXED {

@@ -2,7 +2,8 @@
 //! Text, Instruction List and Ladder.
 //!
 //! ```text
-//! Equations -> spare (less to read) -> scan, terms (statements with names) -> ST | IL | Ladder
+//! Equations -> spare (less to read) -> scan, terms (statements with names) -> ST | IL | Ladder | AWL
+//!                                                                             +-> families: ST of a maker
 //! ```
 //!
 //! # Invariants
@@ -11,7 +12,10 @@
 //! - What a form cannot say is refused with its place, never printed wrong.
 
 mod ascii;
+mod awl;
+mod dialect;
 mod drawn;
+mod families;
 mod form;
 mod il;
 mod ladder;
@@ -30,6 +34,7 @@ use std::collections::HashMap;
 
 pub use ascii::ascii;
 
+use dialect::Dialect;
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
 use g7_model::{Problem, Severity};
@@ -48,6 +53,30 @@ pub enum Form {
     Ld,
     /// Ladder, drawn (SVG).
     Drawing,
+    /// AWL (STL) of Siemens for S7-300 and S7-400, with a symbol table.
+    Awl,
+    /// SCL of Siemens for TIA Portal, with a table of PLC tags.
+    Scl,
+    /// A POU of TwinCAT 3 (`.TcPOU`).
+    TwinCat,
+    /// A program of Logix with a routine in Structured Text (L5X).
+    Logix,
+    /// A section of Control Expert in Structured Text (`.XST`).
+    Unity,
+}
+
+impl Form {
+    fn dialect(self) -> Dialect {
+        let standard = Dialect { set_reset: self == Form::Dolog80, ..Dialect::default() };
+        match self {
+            // The blocks of these are called otherwise, or count otherwise.
+            Form::Awl => Dialect { own_blocks: false, longest: 24, ..standard },
+            Form::Scl | Form::TwinCat => Dialect { own_blocks: false, ..standard },
+            Form::Logix => Dialect { own_blocks: false, longest: 40, ..standard },
+            Form::Unity => Dialect { own_blocks: false, longest: 32, ..standard },
+            Form::St | Form::Il | Form::Dolog80 | Form::Ld | Form::Drawing => standard,
+        }
+    }
 }
 
 /// Equations that were printed.
@@ -55,6 +84,8 @@ pub enum Form {
 pub struct Printed {
     /// The text.
     pub text: String,
+    /// Files that belong to it, by their endings: a table of symbols.
+    pub beside: Vec<(&'static str, String)>,
     /// The name of the function block.
     pub name: String,
     /// The constructs that are printed with a difference.
@@ -83,20 +114,34 @@ impl Printed {
 ///
 /// The constructs that the form cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Result<Printed, Vec<Problem>> {
-    let set_reset = form == Form::Dolog80;
-    let (block, memories, problems) = scan::block(compiled, name, source, set_reset);
+    let dialect = form.dialect();
+    let (block, memories, problems) = scan::block(compiled, name, source, dialect);
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         return Err(problems);
     }
+    let place = compiled.symbols.charts.first().map_or(g7_model::Span::default(), |c| c.at);
+    let mut beside = Vec::new();
     let text = match form {
         Form::St => st::print(&block),
-        Form::Il | Form::Dolog80 => il::print(&block, set_reset),
+        Form::Il | Form::Dolog80 => il::print(&block, dialect.set_reset),
+        Form::Awl => {
+            let (text, symbols) = awl::print(&block, place)?;
+            beside.push(("asc", symbols));
+            text
+        }
+        Form::Scl => {
+            let (text, tags) = families::scl(&block, place)?;
+            beside.push(("tags.xml", tags));
+            text
+        }
+        Form::TwinCat => families::twincat(&block, place)?,
+        Form::Logix => families::logix(&block, place)?,
+        Form::Unity => families::unity(&block, place)?,
         Form::Ld | Form::Drawing => {
-            let place = compiled.symbols.charts.first().map_or(g7_model::Span::default(), |c| c.at);
             let ladder = ladder::ladder(&block, place)?;
             if form == Form::Ld { ld::print(&block.name, &ladder) } else { drawn::draw(&block.name, &ladder) }
         }
     };
     let variables = memories.shown.into_iter().map(|(addr, name, n)| (addr.0, (name, n))).collect();
-    Ok(Printed { text, name: block.name, problems, steps: memories.steps, variables })
+    Ok(Printed { text, name: block.name, beside, problems, steps: memories.steps, variables })
 }

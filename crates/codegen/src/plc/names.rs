@@ -7,13 +7,22 @@ use g7_iec::words::is_word;
 use crate::names::{Given, letters};
 
 /// Names that are given once, in any case.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Names {
+    /// Letters that a name may have.
+    longest: usize,
     given: Given,
     counts: HashMap<String, u32>,
 }
 
+/// Letters that the number of a shortened name may take.
+const NUMBER: usize = 5;
+
 impl Names {
+    pub(crate) fn new(longest: usize) -> Names {
+        Names { longest, given: Given::default(), counts: HashMap::new() }
+    }
+
     /// A variable's name.
     pub(crate) fn variable(&mut self, name: &str) -> String {
         let plain = letters(name);
@@ -36,6 +45,11 @@ impl Names {
 
     /// Capitals and small letters are the same there.
     fn once(&mut self, name: String) -> String {
+        let mut name = name.trim_end_matches('_').to_owned();
+        if name.len() > self.longest {
+            // All letters are ASCII.
+            name.truncate(self.longest.saturating_sub(NUMBER));
+        }
         self.given.once(name.trim_end_matches('_').to_owned(), str::to_uppercase)
     }
 }

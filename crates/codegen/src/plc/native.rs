@@ -10,8 +10,9 @@ use crate::spare::{expanded, operands, sections};
 
 /// The instances that a controller's own function blocks stand for: what they
 /// remember inside is mentioned in their calls alone, and in the count of time.
-/// Gives the memories that the controller keeps; the others are assignments.
-pub(crate) fn native(e: &mut Equations) -> HashSet<MemoryId> {
+/// Gives the memories that the controller keeps; the others are assignments. A controller without these
+/// blocks (`own_blocks` is false) keeps none.
+pub(crate) fn native(e: &mut Equations, own_blocks: bool) -> HashSet<MemoryId> {
     let mut inside: HashMap<MemoryId, Vec<MemoryId>> = HashMap::new();
     for s in e.sections().flat_map(|s| &s.body) {
         s.visit(&mut |s| {
@@ -51,7 +52,9 @@ pub(crate) fn native(e: &mut Equations) -> HashSet<MemoryId> {
     let first_is_plain = |m: &MemoryId| e.memory(*m).is_some_and(|m| matches!(m.what, What::Variable(_)));
     let kept: HashMap<MemoryId, Vec<MemoryId>> = inside
         .into_iter()
-        .filter(|(first, own)| first_is_plain(first) && !copies.contains(first) && own.iter().all(plain))
+        .filter(|(first, own)| {
+            own_blocks && first_is_plain(first) && !copies.contains(first) && own.iter().all(plain)
+        })
         .collect();
     let firsts: HashSet<MemoryId> = kept.keys().copied().collect();
     for s in sections(e) {

@@ -12,6 +12,7 @@ use g7_engine::Block as Kind;
 use g7_equations::{About, Equations, Expr, MemoryId, Section, Stmt, What};
 use g7_model::{Nanos, Problem, Span, Type, codes};
 
+use super::dialect::Dialect;
 use super::form::{Block, Ex, St, narrow};
 use super::memories::{Memories, literal};
 use super::native;
@@ -36,7 +37,7 @@ pub(super) struct Scan<'a> {
     source: &'a str,
     /// The place of what is translated.
     at: Span,
-    set_reset: bool,
+    dialect: Dialect,
     faults: bool,
     /// Comments for the head of the block.
     notes: Vec<String>,
@@ -49,9 +50,9 @@ pub(super) fn block(
     c: &Compiled,
     name: &str,
     source: &str,
-    set_reset: bool,
+    dialect: Dialect,
 ) -> (Block, Memories, Vec<Problem>) {
-    let options = g7_equations::Options { receptivities: set_reset, ..Default::default() };
+    let options = g7_equations::Options { receptivities: dialect.set_reset, ..Default::default() };
     let mut e = g7_equations::equations(c, options);
     let overflow = spare::overflow(&e).map(|at| {
         let text =
@@ -59,10 +60,10 @@ pub(super) fn block(
         Problem::new(&codes::DIFFERENT, at, text)
     });
     let signals = signals(c, &e);
-    let inside = native::native(&mut e);
+    let inside = native::native(&mut e, dialect.own_blocks);
     spare::spare_for_controllers(&mut e, &inside);
     let calls = first_of_calls(&e);
-    let (name, memories) = Memories::new(c, &e, name, &calls, signals);
+    let (name, memories) = Memories::new(c, &e, name, &calls, (signals, dialect.longest));
     let at = c.symbols.charts.first().map(|c| c.at).unwrap_or_default();
     let mut s = Scan {
         c,
@@ -70,7 +71,7 @@ pub(super) fn block(
         memories,
         source,
         at,
-        set_reset,
+        dialect,
         faults: false,
         notes: Vec::new(),
         problems: Vec::new(),
@@ -187,7 +188,8 @@ impl Scan<'_> {
         let mut out = Vec::new();
         let mut k = 0;
         while let Some(s) = list.get(k) {
-            let turned = if self.set_reset { self.turns(list.get(k..).unwrap_or_default()) } else { None };
+            let turned =
+                if self.dialect.set_reset { self.turns(list.get(k..).unwrap_or_default()) } else { None };
             if let Some((n, all)) = turned {
                 out.extend(all);
                 k += n;

@@ -12,19 +12,24 @@ const WIDE: usize = 110;
 
 /// The whole function block.
 pub(crate) fn print(e: &Block) -> String {
+    format!("{}{}END_FUNCTION_BLOCK\n", declarations(e), body(e, "FAULT"))
+}
+
+/// The statements; `fault` is how the memory of a fault is written.
+pub(crate) fn body(e: &Block, fault: &str) -> String {
     let mut p = Printer { out: String::new(), depth: 0, fresh: true };
     for part in &e.parts {
         if e.safe.is_some() {
-            p.guarded("IF NOT FAULT THEN", part);
+            p.guarded(&format!("IF NOT {fault} THEN"), part);
         } else {
             p.block(part);
         }
     }
     if let Some(safe) = e.safe.as_ref().filter(|safe| !safe.is_empty()) {
         p.comment(FAULT_COMES);
-        p.guarded("IF FAULT THEN", safe);
+        p.guarded(&format!("IF {fault} THEN"), safe);
     }
-    format!("{}{}END_FUNCTION_BLOCK\n", declarations(e), p.out)
+    p.out
 }
 
 /// The head of the function block with its variables.
@@ -56,7 +61,8 @@ pub(crate) fn declarations(e: &Block) -> String {
     out
 }
 
-fn type_text(v: &Declared) -> String {
+/// The type of a variable with its initial value.
+pub(crate) fn type_text(v: &Declared) -> String {
     let ty = if v.elements == 1 { v.ty.clone() } else { format!("ARRAY[0..{}] OF {}", v.elements - 1, v.ty) };
     let init: Vec<String> = v.init.iter().map(expression).collect();
     match (init.as_slice(), v.elements) {
@@ -166,12 +172,16 @@ impl Printer {
             }
             St::Exit => self.line("EXIT;"),
             St::Call(name, inputs) => {
-                let inputs: Vec<String> =
-                    inputs.iter().map(|(n, e)| format!("{n} := {}", expression(e))).collect();
+                let inputs: Vec<String> = inputs.iter().map(input).collect();
                 self.line(&format!("{name}({});", inputs.join(", ")));
             }
         }
     }
+}
+
+/// An input of a call; one without a name stands by its place.
+fn input((name, e): &(String, Ex)) -> String {
+    if name.is_empty() { expression(e) } else { format!("{name} := {}", expression(e)) }
 }
 
 /// How tightly it binds.

@@ -58,6 +58,11 @@ impl Variables {
         self.rows.get(name).and_then(|row| self.list.get(*row)).map_or("DINT", |v| &v.ty)
     }
 
+    /// The elements of a variable.
+    pub(crate) fn elements(&self, name: &str) -> u32 {
+        self.rows.get(name).and_then(|row| self.list.get(*row)).map_or(1, |v| v.elements)
+    }
+
     /// The type of a value.
     pub(crate) fn type_name<'a>(&'a self, e: &'a Ex) -> &'a str {
         match e {
