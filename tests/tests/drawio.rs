@@ -78,7 +78,7 @@ fn compare(chart: &Chart, cells: &BTreeMap<&str, Cell<'_>>, what: &str) {
     let foreign: Vec<_> = tied.difference(&asked).collect();
     assert!(foreign.is_empty(), "{what}: {foreign:?}");
     let connectors =
-        cells.values().filter(|c| attribute(c, "value") != "" && attribute(c, "parent") == "1").count();
+        cells.values().filter(|c| !attribute(c, "value").is_empty() && attribute(c, "parent") == "1").count();
     let left = asked.difference(&tied).count();
     assert!(left == 0 || connectors > steps.len(), "{what}: {left} links are missing");
 }
