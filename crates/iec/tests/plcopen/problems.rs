@@ -68,9 +68,8 @@ prove always v
     let mut found = places(text.as_bytes(), &written.problems);
     found.sort();
     let mut expected = [
-        "G0614 1", // other rules
-        "G0605 2", // a channel
-        // inverted
+        "G0614 1",  // other rules
+        "G0605 2",  // a channel
         "G0605 4",  // a safe value
         "G0604 7",  // forcing
         "G0614 7",  // on event
