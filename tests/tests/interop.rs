@@ -16,8 +16,25 @@ use g7_tests::generated::project;
 /// Charts for which the generators need a form of their own: with chained divergences, jumps, macro-steps, two
 /// charts, addresses, function blocks, and one without variables; and what matiec does otherwise than the
 /// standard: several steps with one output, pulses of initial steps, bodies that run once more, `R` after `SD`,
-/// and steps that other charts read.
-const CHARTS: [(&str, &str); 6] = [
+/// and steps that other charts read; and inverted channels and actions of macro-steps, which are rewritten.
+const CHARTS: [(&str, &str); 7] = [
+    (
+        "channels",
+        "input a, b : BOOL
+         input c : BOOL at %IX0.3 inverted
+         output horn, lamp : BOOL
+         output q : BOOL := TRUE at %QX0.1 inverted
+         var n, m : INT
+         chart G {
+           initial step A { N q }
+           macro M = Inner { N horn if a  D 300ms lamp  P1 n := n + 1  P0 m := m + 1  S q }
+           step B { N horn  R q }
+           A -> M when b
+           M -> B when c
+           B -> A when ↑c or B.T > 2s
+         }
+         macrochart Inner { entry step I { N horn if not a }  step K  exit step O  I -> K when a  K -> I when ↑b  K -> O when not a }",
+    ),
     (
         "conveyor",
         "input start, stop, part : BOOL

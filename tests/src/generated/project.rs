@@ -49,6 +49,10 @@ pub fn scans(compiled: &Compiled, seed: u64, count: usize, cycle: i64, even: boo
                 _ => rng.below(12) as u64,
             };
             inputs.insert(key(&v.name), word);
+            if v.inverted {
+                // A file of the standard has the channel as it is as a second variable.
+                inputs.insert(key(&format!("{}_raw", v.name)), 1 - word);
+            }
         }
         all.push(Scan { now, inputs: inputs.clone() });
         let factor = if even { 1 } else { rng.one([1, 1, 1, 1, 2, 10, 50, 100, 300]) };

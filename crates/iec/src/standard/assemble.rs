@@ -4,7 +4,7 @@ use g7_model::codes;
 use g7_model::{
     Action, ActionKind, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item,
     Layout, Literal, Local, Name, NamedAction, Param, Placed, Problem, Profile, ProfileName, Qualifier,
-    Section, Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl,
+    Section, Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl, VarKind,
 };
 
 use super::bodies::At;
@@ -63,9 +63,11 @@ impl<'d> Lower<'d> {
             charts.push((number, parts));
         }
         self.of_file(&mut charts);
+        self.hand_down(&mut charts);
         self.between_programs();
         self.show(&mut charts);
-        let mut body = std::mem::take(&mut self.looking);
+        let mut body = std::mem::take(&mut self.channels);
+        body.append(&mut self.looking);
         body.append(&mut pre);
         body.append(&mut self.sections);
         if let Some(name) = &self.started {
@@ -110,21 +112,49 @@ impl<'d> Lower<'d> {
             return None;
         }
         made.init = decl.init.as_ref().map(|e| self.constant(e, chart));
-        if let Some(other) = decl.address.as_ref().filter(|a| !a.text.starts_with('%')) {
-            let what =
-                format!("the channel `{}` is no address of the standard; those begin with %", other.text);
+        if let Some(other) = decl.address.as_ref().filter(|a| !is_address(&a.text)) {
+            let what = format!(
+                "the channel `{}` is no address of the standard, such as %IX0.1; it is left out",
+                other.text
+            );
             self.left_out(other.at.0, &what);
             made.address = None;
         }
         if decl.inverted {
-            self.lost(decl.at.0, "an inverted channel; write `NOT` where the variable is used");
             made.inverted = false;
+            // Without a channel there is nothing to invert.
+            if made.address.is_some() {
+                self.inverted(&mut made);
+            }
         }
         if let Some(safe) = &decl.safe {
             self.left_out(safe.at.0, "the value of an output after a fault is left out");
             made.safe = None;
         }
         Some(made)
+    }
+
+    /// Gives a variable with an inverted channel a second one that holds the channel as it is. It is computed
+    /// from that before all else, or that from it behind all else.
+    fn inverted(&mut self, decl: &mut VarDecl) {
+        let at = decl.at.0;
+        let kind = std::mem::replace(&mut decl.kind, VarKind::Var);
+        let address = decl.address.take();
+        for name in &decl.names {
+            let raw = self.names.free(None, &format!("{}_raw", name.text));
+            let mut channel = nodes::variable(kind, &raw, decl.ty, at);
+            channel.address.clone_from(&address);
+            let own = nodes::name(&[&name.text], at);
+            let other = nodes::name(&[&raw], at);
+            if kind == VarKind::Input {
+                self.channels.push(nodes::assign(own, nodes::not(other, at), at));
+            } else {
+                let on = decl.init.as_ref().is_some_and(|i| nodes::truth(i) == Some(true));
+                channel.init = Some(nodes::boolean(!on, at));
+                self.closing.push(nodes::assign(other, nodes::not(own, at), at));
+            }
+            self.new_globals.push(channel);
+        }
     }
 
     /// Adds code before or behind the charts.
@@ -218,11 +248,12 @@ impl<'d> Lower<'d> {
             );
         }
         let in_line = macro_step && self.form == Form::Networks;
-        let actions = if in_line { self.of_macro(step) } else { self.actions(key, step, at) };
         if in_line {
+            self.of_macro(key, step, at);
             self.left_out(step.name.at.0, "a macro-step is left out; its expansion stands in its place");
             return None;
         }
+        let actions = self.actions(key, step, at);
         let kind = match (&step.kind, self.form) {
             (StepKind::Enclosing, _) => StepKind::Plain,
             (StepKind::Entry | StepKind::Exit, Form::Networks) => StepKind::Plain,
@@ -247,17 +278,55 @@ impl<'d> Lower<'d> {
         })
     }
 
-    /// The actions of a macro-step whose expansion is written in line.
-    fn of_macro(&mut self, step: &'d Step) -> Vec<Action> {
-        for action in &step.actions {
-            if !matches!(action.kind, ActionKind::Comment(_)) {
-                self.lost(
-                    action.at.0,
-                    "an action of a macro-step, whose expansion stands in its place there",
-                );
+    /// Notes the actions of a macro-step whose expansion is written in line: each step of the expansion has
+    /// them, and the control block of an action joins them again. A body gets a name, so that it has one block.
+    fn of_macro(&mut self, key: StepKey, step: &'d Step, at: &At<'d>) {
+        let mut made = self.actions(key, step, at);
+        made.retain(|a| !matches!(a.kind, ActionKind::Comment(_)));
+        for (number, action) in made.iter_mut().enumerate() {
+            let span = action.at.0;
+            if let ActionKind::Qualified { target, .. } = &mut action.kind
+                && let Target::Work(work) = target
+            {
+                let wish = format!("{}_{}", self.names.step(key), number + 1);
+                let name = self.names.free(at.program, &wish);
+                let body = Body::St(nodes::block(work.statements().to_vec(), span));
+                let named = NamedAction { name: Name::new(&*name, span), comment: None, body, at: action.at };
+                self.of_macros.push((key, ChartItem::Action(named)));
+                *target = Target::Path(nodes::path(&[&name], span));
             }
         }
-        Vec::new()
+        for inner in self.inside(key, 0) {
+            let with = |a: &Action| (inner, a.clone());
+            self.handed_down.extend(made.iter().map(with));
+        }
+    }
+
+    /// The steps in the expansion of a macro-step, at all levels.
+    fn inside(&self, key: StepKey, depth: usize) -> Vec<StepKey> {
+        let Some(inner) = self.scopes.expansion(key).filter(|_| depth < DEEPEST) else { return vec![key] };
+        self.scopes.steps_of(inner).flat_map(|(k, _)| self.inside(k, depth + 1)).collect()
+    }
+
+    /// Gives the actions of macro-steps to the steps of their expansions.
+    fn hand_down(&mut self, charts: &mut [(usize, Vec<ChartItem>)]) {
+        for (key, named) in std::mem::take(&mut self.of_macros) {
+            if let Some((_, items)) = charts.iter_mut().find(|c| c.0 == key.0) {
+                items.push(named);
+            }
+        }
+        for (key, action) in std::mem::take(&mut self.handed_down) {
+            let own = self.names.step(key);
+            let items = charts.iter_mut().find(|c| c.0 == key.0).map(|c| &mut c.1);
+            let step = items.into_iter().flatten().find_map(|i| match i {
+                ChartItem::Step(s) if *s.name.text == *own => Some(s),
+                _ => None,
+            });
+            if let Some(step) = step {
+                step.actions.push(action);
+                step.braces = true;
+            }
+        }
     }
 
     fn transition(
@@ -496,6 +565,17 @@ impl<'d> Lower<'d> {
         }
         layouts
     }
+}
+
+/// True if a text is an address of the standard: `%IX0.1`, `%QW3`, `%M12`.
+fn is_address(text: &str) -> bool {
+    let Some(rest) = text.strip_prefix('%') else { return false };
+    let Some(rest) = rest.to_ascii_uppercase().strip_prefix(['I', 'Q', 'M']).map(str::to_owned) else {
+        return false;
+    };
+    let digits = rest.strip_prefix(['X', 'B', 'W', 'D', 'L']).unwrap_or(&rest);
+    digits == "*"
+        || digits.split('.').all(|part| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit()))
 }
 
 /// True if a body may end early.

@@ -4,8 +4,8 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use g7_model::codes;
 use g7_model::{
-    ActionKind, Chart, ChartItem, ChartKind, Document, Expr, Item, Nanos, Problem, ProfileName, Qualifier,
-    Span, StepKind, Stmt, Switch, Target, VarDecl,
+    Action, ActionKind, Chart, ChartItem, ChartKind, Document, Expr, Item, Nanos, Problem, ProfileName,
+    Qualifier, Span, StepKind, Stmt, Switch, Target, VarDecl,
 };
 
 use super::identifiers::Names;
@@ -55,6 +55,8 @@ pub(super) struct Lower<'d> {
     pub(super) mirrors: BTreeMap<StepKey, String>,
     pub(super) watches: Vec<Watch>,
     pub(super) started: Option<String>,
+    /// Statements before all others that read inverted channels.
+    pub(super) channels: Vec<Stmt>,
     /// Statements before the charts that compute edges and delays.
     pub(super) looking: Vec<Stmt>,
     /// Statements behind the charts.
@@ -63,6 +65,10 @@ pub(super) struct Lower<'d> {
     pub(super) sections: Vec<Stmt>,
     /// Sections that are computed, with the variable of each.
     pub(super) computed: Vec<(VarKey<'d>, String)>,
+    /// Actions of macro-steps in line, for the steps of their expansions.
+    pub(super) handed_down: Vec<(StepKey, Action)>,
+    /// Bodies of macro-steps in line, with a name each.
+    pub(super) of_macros: Vec<(StepKey, ChartItem)>,
     pub(super) new_globals: Vec<VarDecl>,
     pub(super) new_vars: Vec<Vec<VarDecl>>,
     pub(super) problems: Vec<Problem>,
@@ -126,10 +132,13 @@ impl<'d> Lower<'d> {
             mirrors: BTreeMap::new(),
             watches: Vec::new(),
             started: None,
+            channels: Vec::new(),
             looking: Vec::new(),
             closing: Vec::new(),
             sections: Vec::new(),
             computed: Vec::new(),
+            handed_down: Vec::new(),
+            of_macros: Vec::new(),
             new_globals: Vec::new(),
             new_vars: Vec::new(),
             problems: Vec::new(),

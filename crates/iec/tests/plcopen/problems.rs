@@ -70,7 +70,6 @@ prove always v
     let mut expected = [
         "G0614 1",  // other rules
         "G0605 2",  // a channel
-        "G0604 3",  // inverted
         "G0605 4",  // a safe value
         "G0604 7",  // forcing
         "G0614 7",  // on event

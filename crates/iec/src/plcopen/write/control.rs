@@ -19,7 +19,7 @@ use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
     Action, ActionKind, BinaryOp, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, FbKind, Item,
     Literal, Name, NamedAction, Nanos, Path, Problem, Qualifier, Span, Step, Stmt, StmtKind, Target, Type,
-    VarKind, codes,
+    VarDecl, VarKind, codes,
 };
 
 use crate::nodes::{self, Taken};
@@ -28,13 +28,13 @@ use crate::nodes::{self, Taken};
 pub(super) fn control(mut document: Document, problems: &mut Vec<Problem>) -> Document {
     let mut taken = names(&document);
     let written = written(&document);
-    let given = with_values(&document);
+    let (variables, given) = (variables(&document, |_| true), variables(&document, |v| v.init.is_some()));
     for item in &mut document.items {
         if let Item::Chart(chart) = item
             && chart.kind == ChartKind::Chart
         {
             Control { taken: &mut taken, written: &written, given: &given, problems, vars: Vec::new() }
-                .chart(chart);
+                .chart(chart, &variables);
         }
     }
     document
@@ -69,8 +69,9 @@ struct Control<'c> {
 }
 
 impl Control<'_> {
-    fn chart(mut self, chart: &mut Chart) {
+    fn chart(mut self, chart: &mut Chart, variables: &HashSet<String>) {
         let at = chart.name.at.0;
+        self.apart(chart, variables);
         let named: HashMap<String, NamedAction> = chart
             .items
             .iter()
@@ -155,6 +156,30 @@ impl Control<'_> {
         step.comment = Some("always active: the actions that the tool does not control by itself".into());
         chart.items.append(&mut self.vars);
         chart.items.push(ChartItem::Step(step));
+    }
+
+    /// Gives a step that has the name of a variable another one, because its activity is read now.
+    fn apart(&mut self, chart: &mut Chart, variables: &HashSet<String>) {
+        let title = chart.name.text.clone();
+        let mut new: HashMap<String, String> = HashMap::new();
+        for step in chart.steps().filter(|s| variables.contains(&key(&s.name.text))) {
+            let name = self.taken.give(&format!("{title}_{}", step.name.text));
+            let what = format!("`{}` is called `{name}` there", step.name.text);
+            self.problems.push(Problem::new(&codes::RENAMED, step.name.at.0, what));
+            new.insert(key(&step.name.text), name);
+        }
+        let rename = |name: &mut Name| {
+            if let Some(text) = new.get(&key(&name.text)) {
+                *name = Name::new(text.as_str(), name.at.0);
+            }
+        };
+        for item in &mut chart.items {
+            match item {
+                ChartItem::Step(s) => rename(&mut s.name),
+                ChartItem::Transition(t) => t.from.iter_mut().chain(&mut t.to).for_each(rename),
+                _ => {}
+            }
+        }
     }
 
     /// A new variable of the chart.
@@ -497,9 +522,9 @@ fn written(document: &Document) -> HashSet<String> {
     all.0
 }
 
-/// The variables with initial values.
-fn with_values(document: &Document) -> HashSet<String> {
+/// The variables that fit, in upper case.
+fn variables(document: &Document, fits: impl Fn(&VarDecl) -> bool) -> HashSet<String> {
     let of_file = document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some(v) } else { None });
     let all = of_file.chain(document.charts().flat_map(Chart::vars));
-    all.filter(|v| v.init.is_some()).flat_map(|v| &v.names).map(|n| key(&n.text)).collect()
+    all.filter(|v| fits(v)).flat_map(|v| &v.names).map(|n| key(&n.text)).collect()
 }
