@@ -32,7 +32,13 @@ type Read = fn(&[u8], FileId) -> (Document, Vec<Problem>);
 
 /// The forms, by name.
 const FORMS: [(&str, Write, Read); 2] =
-    [("PLCopen XML", plcopen::export, plcopen::import), ("text", sfc::export, sfc::import)];
+    [("PLCopen XML", whole, plcopen::import), ("text", sfc::export, sfc::import)];
+
+/// The project with all that the standard can say. For Beremiz and OpenPLC the actions stand in a step of their own;
+/// `tests/tests/interop.rs` runs those projects.
+fn whole(document: &Document) -> Written {
+    plcopen::export_for(document, plcopen::Dialect::Standard)
+}
 
 /// Cases that run otherwise in a form, which the export tells as a warning: what runs on
 /// clearing runs behind the evolution, and in text the initial step stands first.
@@ -172,7 +178,12 @@ fn difference(one: &Bench, two: &Bench) -> Option<String> {
     let steps = two.steps();
     let mut left = two.active();
     for step in one.active() {
-        if !counterpart(&step, &steps, &one.macros).is_some_and(|there| left.remove(there)) {
+        let there = counterpart(&step, &steps, &one.macros);
+        // In text a macro-step is no step: its expansion stands in its place, and its actions with the variables.
+        if there.is_none() && step.rsplit('.').next().is_some_and(|last| one.macros.contains_key(last)) {
+            continue;
+        }
+        if !there.is_some_and(|there| left.remove(there)) {
             return Some(format!("step {step} is active, there {:?}", two.active()));
         }
     }

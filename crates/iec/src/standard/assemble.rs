@@ -2,18 +2,15 @@
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item,
-    Layout, Literal, Local, Name, NamedAction, Param, Placed, Problem, Profile, ProfileName, Qualifier,
-    Section, Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl, VarKind,
+    Action, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item, Layout,
+    Literal, Local, Name, NamedAction, Param, Placed, Problem, Profile, ProfileName, Qualifier, Section,
+    Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl, VarKind,
 };
 
 use super::bodies::At;
-use super::lower::{Form, Lower};
+use super::lower::{DEEPEST, Form, Lower};
 use super::scopes::{Ref, StepKey};
 use crate::nodes;
-
-/// The deepest nesting of macro-steps.
-const DEEPEST: usize = 20;
 
 impl<'d> Lower<'d> {
     /// The whole document.
@@ -276,57 +273,6 @@ impl<'d> Lower<'d> {
             actions,
             at: step.at,
         })
-    }
-
-    /// Notes the actions of a macro-step whose expansion is written in line: each step of the expansion has
-    /// them, and the control block of an action joins them again. A body gets a name, so that it has one block.
-    fn of_macro(&mut self, key: StepKey, step: &'d Step, at: &At<'d>) {
-        let mut made = self.actions(key, step, at);
-        made.retain(|a| !matches!(a.kind, ActionKind::Comment(_)));
-        for (number, action) in made.iter_mut().enumerate() {
-            let span = action.at.0;
-            if let ActionKind::Qualified { target, .. } = &mut action.kind
-                && let Target::Work(work) = target
-            {
-                let wish = format!("{}_{}", self.names.step(key), number + 1);
-                let name = self.names.free(at.program, &wish);
-                let body = Body::St(nodes::block(work.statements().to_vec(), span));
-                let named = NamedAction { name: Name::new(&*name, span), comment: None, body, at: action.at };
-                self.of_macros.push((key, ChartItem::Action(named)));
-                *target = Target::Path(nodes::path(&[&name], span));
-            }
-        }
-        for inner in self.inside(key, 0) {
-            let with = |a: &Action| (inner, a.clone());
-            self.handed_down.extend(made.iter().map(with));
-        }
-    }
-
-    /// The steps in the expansion of a macro-step, at all levels.
-    fn inside(&self, key: StepKey, depth: usize) -> Vec<StepKey> {
-        let Some(inner) = self.scopes.expansion(key).filter(|_| depth < DEEPEST) else { return vec![key] };
-        self.scopes.steps_of(inner).flat_map(|(k, _)| self.inside(k, depth + 1)).collect()
-    }
-
-    /// Gives the actions of macro-steps to the steps of their expansions.
-    fn hand_down(&mut self, charts: &mut [(usize, Vec<ChartItem>)]) {
-        for (key, named) in std::mem::take(&mut self.of_macros) {
-            if let Some((_, items)) = charts.iter_mut().find(|c| c.0 == key.0) {
-                items.push(named);
-            }
-        }
-        for (key, action) in std::mem::take(&mut self.handed_down) {
-            let own = self.names.step(key);
-            let items = charts.iter_mut().find(|c| c.0 == key.0).map(|c| &mut c.1);
-            let step = items.into_iter().flatten().find_map(|i| match i {
-                ChartItem::Step(s) if *s.name.text == *own => Some(s),
-                _ => None,
-            });
-            if let Some(step) = step {
-                step.actions.push(action);
-                step.braces = true;
-            }
-        }
     }
 
     fn transition(

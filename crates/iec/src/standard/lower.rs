@@ -11,6 +11,9 @@ use g7_model::{
 use super::identifiers::Names;
 use super::scopes::{Ref, Scopes, StepKey, VarKey};
 
+/// The deepest nesting of macro-steps.
+pub(super) const DEEPEST: usize = 20;
+
 /// The kind of program that the format has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {

@@ -22,6 +22,7 @@ mod assemble;
 mod bodies;
 mod identifiers;
 mod lower;
+mod macros;
 mod scopes;
 mod watch;
 
