@@ -2,6 +2,8 @@
 //!
 //! Nodes that no function has are removed by the library, in a thread of its own and by [`Diagrams::tidy`].
 
+use std::cell::Cell;
+
 use oxidd::bcdd::{BCDDFunction, BCDDManagerRef, new_manager};
 use oxidd::util::{OptBool, OutOfMemory};
 use oxidd::{
@@ -23,6 +25,8 @@ impl From<OutOfMemory> for Full {
 pub struct Diagrams {
     manager: BCDDManagerRef,
     room: usize,
+    /// Nodes that were left when some were removed last.
+    left: Cell<usize>,
 }
 
 /// A function of the variables.
@@ -42,7 +46,7 @@ impl Diagrams {
         let room = room.max(1 << 10);
         let manager = new_manager(room, room / 2, 1);
         manager.with_manager_exclusive(|m| m.add_vars(variables));
-        Diagrams { manager, room }
+        Diagrams { manager, room, left: Cell::new(0) }
     }
 
     /// A constant.
@@ -64,11 +68,12 @@ impl Diagrams {
         Ok(Renaming(Subst::new(from, to?)))
     }
 
-    /// Removes nodes that no function has, if there are many.
+    /// Removes nodes that no function has, if there are many, and many more than were left the last time.
     pub fn tidy(&self) {
         self.manager.with_manager_shared(|m| {
-            if m.num_inner_nodes() > self.room / 2 {
+            if m.num_inner_nodes() > (self.room / 2).max(self.left.get() + self.room / 8) {
                 m.gc();
+                self.left.set(m.num_inner_nodes());
             }
         });
     }

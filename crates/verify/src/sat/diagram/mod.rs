@@ -39,6 +39,8 @@ use functions::{Functions, Stop};
 use order::order;
 use relation::Relation;
 
+/// Most levels: a long time that is counted scan by scan has more, and other layers pass it at once.
+const LEVELS: usize = 4096;
 /// How often the search begins again with fewer thoughts, before it goes on with none.
 const AGAIN: usize = 3;
 /// Moves of states at random that must stay in the set, 64 at a time, where the solver does not check it.
@@ -155,6 +157,9 @@ impl<'a> Search<'a> {
             self.signals.iter().map(|s| Ok(self.f.get(*s)?.and(&self.relation.valid)?)).collect();
         let asked = asked?;
         while !level.is_none() {
+            if self.levels.len() == LEVELS {
+                return Err(Stop::Full);
+            }
             let outside = level.without(&self.f.thought)?;
             if !outside.is_none() {
                 return Ok(Some(outside));
