@@ -17,7 +17,7 @@ fn attribute<'x>(cell: &Cell<'x>, name: &str) -> &'x str {
     cell.attribute(name).unwrap_or("")
 }
 
-/// The cells of a model, by their names: what they point to is there, and their sizes are numbers.
+/// The cells of a model by their ids. Checks that each parent, source and target exists, and that sizes are numbers.
 fn cells<'x>(model: Node<'x, 'x>, what: &str) -> BTreeMap<&'x str, Cell<'x>> {
     let mut known: BTreeMap<&str, Cell<'_>> = BTreeMap::new();
     let all: Vec<Cell<'_>> = model.descendants().filter(|n| n.has_tag_name("mxCell")).collect();

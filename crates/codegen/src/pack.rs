@@ -34,7 +34,8 @@ pub(crate) fn pack(m: &mut Module) {
     }
 }
 
-/// A bit of the memory: the words it stands in, and its number there.
+/// If an expression is a packed truth value: the array of words that has it, the index of its bit, and true if it is
+/// the activity of a step.
 fn bit_of(e: &Expr, packed: &HashMap<String, String>) -> Option<(Expr, Expr, bool)> {
     let Expr::Index(of, i) = e else { return None };
     let Expr::Field(home, name) = &**of else { return None };

@@ -56,7 +56,7 @@ impl Room {
         self.clock != Clock::Nanoseconds
     }
 
-    /// The head of the code about its clock; empty for nanoseconds.
+    /// The comment about the clock at the head of the code; empty for nanoseconds.
     pub(crate) fn note(self) -> String {
         if !self.is_narrow() {
             return String::new();

@@ -42,13 +42,13 @@ impl Board {
         if self.is_avr { sizes.avr } else { sizes.wide }
     }
 
-    /// True if the state stands beside what else needs RAM there.
+    /// True if the state fits beside the RAM that the stack and the library need.
     pub fn holds(&self, sizes: Sizes) -> bool {
         self.state(sizes) + self.reserve <= self.ram
     }
 }
 
-/// The sizes of a module as C has it.
+/// The bytes that the state and the tables of a module take in C.
 pub(crate) fn sizes(m: &Module) -> Sizes {
     let tables = m.consts.iter().map(|c| {
         let Ty::Array(of, n) = &c.ty else { return 0 };
@@ -84,7 +84,7 @@ struct Layout<'a> {
 }
 
 impl Layout<'_> {
-    /// Bytes of a type, and those that its address is a multiple of.
+    /// Size and alignment of a type, in bytes.
     fn of(&self, ty: &Ty) -> (usize, usize) {
         let number = |bytes: usize| (bytes, if self.avr { 1 } else { bytes });
         match ty {

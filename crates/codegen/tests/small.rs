@@ -101,7 +101,7 @@ fn a_compiler_lays_it_out_as_it_was_worked_out() {
                     let data = sections.lines().nth(1).and_then(|l| l.split_whitespace().nth(1));
                     assert_eq!(data, Some("0"), "tables in RAM: {sections}");
                 } else {
-                    // Here a number of 64 bits stands at a multiple of 8, as on 32 bits.
+                    // gcc for x86-64 aligns 64-bit numbers to 8 bytes, as compilers for 32-bit controllers do.
                     assert_eq!(seen, p.sizes.wide, "chart {k}");
                 }
                 let _ = std::fs::remove_dir_all(&folder);

@@ -55,7 +55,7 @@ fn what_c_cannot_say_is_a_problem_and_nothing_is_written() {
 }
 
 /// Every language and style: arguments, files in their order, a text that only this style contains.
-const ALL: [(&[&str], &[&str], &str); 14] = [
+const ALL: [(&[&str], &[&str], &str); 19] = [
     (&["c"], &["tank.h", "tank.c"], "receptivity("),
     (&["c", "--style", "structured"], &["tank.h", "tank.c"], "receptivity("),
     (&["c", "--style", "flat"], &["tank.h", "tank.c"], "sections_of_pass("),
@@ -71,6 +71,11 @@ const ALL: [(&[&str], &[&str], &str); 14] = [
     // Ladder has no loops, so it needs a profile with one pass.
     (&["ld", "--profile", "pl7"], &["tank.xml"], "<LD>"),
     (&["ld", "--profile", "pl7", "--style", "drawn"], &["tank.svg"], "<svg"),
+    (&["awl"], &["tank.asc", "tank.awl"], "END_DATA_BLOCK"),
+    (&["scl"], &["tank.tags.xml", "tank.scl"], "S7_Optimized_Access"),
+    (&["twincat"], &["tank.TcPOU"], "<TcPlcObject"),
+    (&["logix"], &["tank.L5X"], "<RSLogix5000Content"),
+    (&["unity"], &["tank.XST"], "<STExchangeFile>"),
 ];
 
 #[test]
@@ -131,7 +136,7 @@ fn the_bead_sorter_compiles_without_a_warning() {
     }
 }
 
-/// A board with too little RAM: nothing is written, and the way out is told; what fits is.
+/// For a board with too little RAM nothing is written, and the message names a way out. A chart that fits is written.
 #[test]
 fn a_board_that_is_too_small_is_told() {
     let folder = Folder::new();

@@ -3,8 +3,9 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::{
-    Action, ActionKind, Arg, BinaryOp, Block, Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Span,
-    Step, StepKind, Stmt, StmtKind, Target, Transition, Type, UnaryOp, VarDecl, VarKind, Work,
+    Action, ActionKind, Arg, BinaryOp, Block, ChartItem, Document, Expr, ExprKind, Item, Literal, Name,
+    Nanos, Path, Qualifier, Span, Step, StepKind, Stmt, StmtKind, Target, Transition, Type, UnaryOp, VarDecl,
+    VarKind, Work,
 };
 
 /// The names given so far. Case is ignored unless `exact`.
@@ -20,6 +21,33 @@ impl Taken {
     /// Names that differ in case are different.
     pub fn exact() -> Taken {
         Taken { exact: true, ..Taken::default() }
+    }
+
+    /// The names of a document: variables, functions, charts, steps, named actions and labels of transitions. Not
+    /// those of transition sections, which some forms write under other names.
+    pub fn of(document: &Document) -> Taken {
+        let mut taken = Taken::default();
+        let mut take = |name: &Name| _ = taken.take(&name.text);
+        for item in &document.items {
+            match item {
+                Item::Var(v) => v.names.iter().for_each(&mut take),
+                Item::Function(f) => take(&f.name),
+                Item::Chart(c) => {
+                    take(&c.name);
+                    for item in &c.items {
+                        match item {
+                            ChartItem::Var(v) => v.names.iter().for_each(&mut take),
+                            ChartItem::Step(s) => take(&s.name),
+                            ChartItem::Action(a) => take(&a.name),
+                            ChartItem::Transition(t) => t.label.iter().for_each(&mut take),
+                            ChartItem::Section(_) | ChartItem::Pre(..) | ChartItem::Post(..) => {}
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        taken
     }
 
     fn key(&self, name: &str) -> String {

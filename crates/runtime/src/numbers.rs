@@ -28,7 +28,7 @@ pub fn ticks_since(now: u32, then: u32) -> u32 {
     now.wrapping_sub(then).min(0x8000_0000)
 }
 
-/// The event, or the latest that is as long ago as ticks can tell.
+/// The instant `then`. If it is longer ago than ticks can tell, the instant that is just as long ago as they can.
 pub fn ticks_held(now: u32, then: u32) -> u32 {
     now.wrapping_sub(ticks_since(now, then))
 }

@@ -1,6 +1,6 @@
-//! Decision diagrams: functions of bits, each in one form, so that two that are equal are the same.
+//! Decision diagrams of Boolean functions. Two equal functions are the same diagram.
 //!
-//! Nodes that no function has are removed by the library, in a thread of its own and by [`Diagrams::tidy`].
+//! The library removes unused nodes in a thread of its own; [`Diagrams::tidy`] does it at once.
 
 use std::cell::Cell;
 
@@ -25,7 +25,7 @@ impl From<OutOfMemory> for Full {
 pub struct Diagrams {
     manager: BCDDManagerRef,
     room: usize,
-    /// Nodes that were left when some were removed last.
+    /// Number of nodes after the last removal.
     left: Cell<usize>,
 }
 
@@ -37,8 +37,7 @@ pub struct Function(BCDDFunction);
 pub struct Renaming(Subst<BCDDFunction>);
 
 impl Diagrams {
-    /// Bytes for each node of the room, about: the node, its place in a table, and a share of the results that
-    /// are remembered.
+    /// Bytes for each node, about: the node itself, its entry in a table, and its share of the cache of results.
     pub const BYTES: usize = 40;
 
     /// A place for so many variables, and for so many nodes.
@@ -68,7 +67,7 @@ impl Diagrams {
         Ok(Renaming(Subst::new(from, to?)))
     }
 
-    /// Removes nodes that no function has, if there are many, and many more than were left the last time.
+    /// Removes unused nodes if more than half of the room is taken, and many nodes were added since the last removal.
     pub fn tidy(&self) {
         self.manager.with_manager_shared(|m| {
             if m.num_inner_nodes() > (self.room / 2).max(self.left.get() + self.room / 8) {

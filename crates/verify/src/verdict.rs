@@ -70,7 +70,7 @@ pub enum Certificate {
         states: Option<u128>,
         /// Number of nodes of the diagram.
         nodes: usize,
-        /// Verified by a checker with a solver of its own. Else states at random did not leave it.
+        /// True if a checker with its own solver confirmed the set. If false, only random runs were tried; they stayed in it.
         checked: bool,
     },
     /// An inductive invariant, verified by a checker with a solver of its own.

@@ -128,6 +128,16 @@ impl Ex {
         }
     }
 
+    /// The expressions that it is made of, in their order.
+    pub(crate) fn inner_mut(&mut self) -> Vec<&mut Ex> {
+        match self {
+            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => Vec::new(),
+            Ex::Index(_, e) | Ex::Not(e) | Ex::Neg(e) => vec![e],
+            Ex::And(list) | Ex::Or(list) | Ex::Call(_, list) => list.iter_mut().collect(),
+            Ex::Xor(a, b) | Ex::Op(_, a, b) => vec![a, b],
+        }
+    }
+
     /// True if it reads no variable at all.
     pub(crate) fn is_constant(&self) -> bool {
         let mut found = true;
@@ -244,6 +254,16 @@ pub(crate) struct Block {
     pub(crate) parts: Vec<Vec<St>>,
     /// Safe values of the outputs, where a fault can come.
     pub(crate) safe: Option<Vec<St>>,
+}
+
+impl Block {
+    /// The statements of a scan in their order, each list with the value of the memory `FAULT` for which it runs, if
+    /// a fault can come. The safe values, for which it is TRUE, are the last.
+    pub(crate) fn guarded(&self) -> impl Iterator<Item = (Option<bool>, &[St])> {
+        let parts = self.parts.iter().map(|part| (self.safe.is_some().then_some(false), part.as_slice()));
+        let safe = self.safe.iter().filter(|safe| !safe.is_empty());
+        parts.chain(safe.map(|safe| (Some(true), safe.as_slice())))
+    }
 }
 
 /// A number that was only widened, as it was.

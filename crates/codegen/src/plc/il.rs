@@ -19,16 +19,15 @@ pub(crate) fn print(e: &Block, set_reset: bool) -> String {
         labels: 0,
         loops: Vec::new(),
     };
-    for part in &e.parts {
-        if e.safe.is_some() {
-            p.when(&Ex::var("FAULT").not(), part);
-        } else {
-            p.block(part);
+    for (guard, part) in e.guarded() {
+        match guard {
+            None => p.block(part),
+            Some(false) => p.when(&Ex::var("FAULT").not(), part),
+            Some(true) => {
+                p.comment(FAULT_COMES);
+                p.when(&Ex::var("FAULT"), part);
+            }
         }
-    }
-    if let Some(safe) = e.safe.as_ref().filter(|safe| !safe.is_empty()) {
-        p.comment(FAULT_COMES);
-        p.when(&Ex::var("FAULT"), safe);
     }
     let body = if p.out.trim().is_empty() { "  LD TRUE\n".to_owned() } else { p.out };
     let variables = p.variables.into_list();

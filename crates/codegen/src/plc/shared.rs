@@ -157,15 +157,7 @@ fn put(e: &mut Ex, by: &HashMap<Vec<String>, String>) {
         *e = Ex::var(own);
         return;
     }
-    match e {
-        Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => {}
-        Ex::Index(_, e) | Ex::Not(e) | Ex::Neg(e) => put(e, by),
-        Ex::And(list) | Ex::Or(list) | Ex::Call(_, list) => list.iter_mut().for_each(|e| put(e, by)),
-        Ex::Xor(a, b) | Ex::Op(_, a, b) => {
-            put(a, by);
-            put(b, by);
-        }
-    }
+    e.inner_mut().into_iter().for_each(|inner| put(inner, by));
 }
 
 #[cfg(test)]

@@ -18,18 +18,29 @@ pub(crate) fn print(e: &Block) -> String {
 /// The statements; `fault` is how the memory of a fault is written.
 pub(crate) fn body(e: &Block, fault: &str) -> String {
     let mut p = Printer { out: String::new(), depth: 0, fresh: true };
-    for part in &e.parts {
-        if e.safe.is_some() {
-            p.guarded(&format!("IF NOT {fault} THEN"), part);
-        } else {
-            p.block(part);
+    for (guard, part) in e.guarded() {
+        match guard {
+            None => p.block(part),
+            Some(false) => p.guarded(&format!("IF NOT {fault} THEN"), part),
+            Some(true) => {
+                p.comment(FAULT_COMES);
+                p.guarded(&format!("IF {fault} THEN"), part);
+            }
         }
     }
-    if let Some(safe) = e.safe.as_ref().filter(|safe| !safe.is_empty()) {
-        p.comment(FAULT_COMES);
-        p.guarded(&format!("IF {fault} THEN"), safe);
-    }
     p.out
+}
+
+/// The sections of a function block that have variables, each with its head.
+pub(crate) fn sections(variables: &[Declared]) -> impl Iterator<Item = (&'static str, Vec<&Declared>)> {
+    let heads = [
+        (Class::Input, "VAR_INPUT"),
+        (Class::Output, "VAR_OUTPUT"),
+        (Class::Retain, "VAR RETAIN"),
+        (Class::Internal, "VAR"),
+    ];
+    let own = |class: Class| variables.iter().filter(|v| v.class == class).collect::<Vec<_>>();
+    heads.into_iter().map(move |(class, head)| (head, own(class))).filter(|(_, own)| !own.is_empty())
 }
 
 /// The head of the function block with its variables.
@@ -39,17 +50,7 @@ pub(crate) fn declarations(e: &Block) -> String {
         let _ = writeln!(out, "(* {} *)", plain(note));
     }
     let _ = writeln!(out, "FUNCTION_BLOCK {}", e.name);
-    let heads = [
-        (Class::Input, "VAR_INPUT"),
-        (Class::Output, "VAR_OUTPUT"),
-        (Class::Retain, "VAR RETAIN"),
-        (Class::Internal, "VAR"),
-    ];
-    for (class, head) in heads {
-        let mut own = e.variables.iter().filter(|v| v.class == class).peekable();
-        if own.peek().is_none() {
-            continue;
-        }
+    for (head, own) in sections(&e.variables) {
         let _ = writeln!(out, "{head}");
         for v in own {
             let note = if v.note.is_empty() { String::new() } else { format!(" (* {} *)", plain(&v.note)) };

@@ -12,7 +12,8 @@ use crate::{End, Link, Part, Placement, Point, Rect};
 /// Cells, as text, and where the symbols stand that links may end at.
 pub(super) struct Cells {
     out: String,
-    dark: bool,
+    /// The style sheet of the pictures, which has the colours.
+    sheet: String,
     /// The box of each step and transition, by the name of its cell.
     ends: HashMap<String, Rect>,
     /// Links wait until both ends are there.
@@ -31,7 +32,7 @@ struct Pen {
 
 impl Cells {
     pub(super) fn new(dark: bool) -> Cells {
-        Cells { out: String::new(), dark, ends: HashMap::new(), links: Vec::new(), count: 0 }
+        Cells { out: String::new(), sheet: style(dark), ends: HashMap::new(), links: Vec::new(), count: 0 }
     }
 
     /// Adds a symbol.
@@ -174,7 +175,7 @@ impl Cells {
             escape(&style),
             point(*first, "sourcePoint"),
             point(*last, "targetPoint"),
-            bends(inner, Point::default())
+            bends(inner)
         );
     }
 
@@ -223,7 +224,7 @@ impl Cells {
             "<mxCell id=\"l{number}\" parent=\"1\" source=\"{from}\" target=\"{to}\" style=\"{}\" edge=\"1\">\
              <mxGeometry relative=\"1\" as=\"geometry\">{}</mxGeometry></mxCell>",
             escape(&style),
-            bends(inner, Point::default())
+            bends(inner)
         );
         for (k, (tip, way)) in link.arrows.iter().enumerate() {
             arrow(out, &format!("l{number}.{k}"), moved(tip), *way, &self.pen("g7-mark"));
@@ -232,9 +233,8 @@ impl Cells {
 
     /// The values of a class in the style sheet of the pictures.
     fn pen(&self, class: &str) -> Pen {
-        let sheet = style(self.dark);
         let of = |selector: &str, key: &str| {
-            let rules = sheet.split('}').filter_map(|rule| rule.split_once('{'));
+            let rules = self.sheet.split('}').filter_map(|rule| rule.split_once('{'));
             let mine = rules.filter(|(names, _)| names.split(',').any(|n| n.trim() == selector));
             let values = mine.flat_map(|(_, body)| body.split(';')).filter_map(|v| v.split_once(':'));
             values.filter(|(k, _)| *k == key).map(|(_, v)| v.to_owned()).next_back()
@@ -277,13 +277,13 @@ fn point(p: Point, name: &str) -> String {
     format!("<mxPoint x=\"{}\" y=\"{}\" as=\"{name}\"/>", Px(p.x), Px(p.y))
 }
 
-fn bends(points: &[Point], shift: Point) -> String {
+fn bends(points: &[Point]) -> String {
     if points.is_empty() {
         return String::new();
     }
     let mut out = String::from("<Array as=\"points\">");
     for p in points {
-        let _ = write!(out, "<mxPoint x=\"{}\" y=\"{}\"/>", Px(p.x + shift.x), Px(p.y + shift.y));
+        let _ = write!(out, "<mxPoint x=\"{}\" y=\"{}\"/>", Px(p.x), Px(p.y));
     }
     out.push_str("</Array>");
     out

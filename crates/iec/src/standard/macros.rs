@@ -45,8 +45,8 @@ impl<'d> Lower<'d> {
         }
     }
 
-    /// True if some step of the expansion of a macro-step, at all levels, is active exactly while the macro-step is:
-    /// none begins and none ends by itself.
+    /// True if the expansion of a macro-step has an active step exactly while the macro-step is active. So neither the
+    /// expansion nor one inside it may have a source, a sink or an initial step.
     fn keeps_a_step(&self, key: StepKey, depth: usize) -> bool {
         let Some(inner) = self.scopes.expansion(key) else { return true };
         let is_closed = |c: &Chart| c.transitions().all(|t| !t.from.is_empty() && !t.to.is_empty());

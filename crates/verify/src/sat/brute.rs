@@ -2,6 +2,7 @@
 
 use std::collections::BTreeSet;
 
+use crate::layer::Budget;
 use crate::sat::graph::{Init, Signal, System};
 use crate::sat::simulate::evaluate;
 
@@ -166,4 +167,22 @@ pub(crate) fn by_hand(s: &System, signals: &[Signal]) -> (usize, Vec<Option<usiz
         level = next;
     }
     (seen.len(), first, stuck)
+}
+
+/// A budget without limits.
+pub(crate) fn unlimited() -> Budget<'static> {
+    Budget { states: usize::MAX, scans: usize::MAX, bytes: usize::MAX, stop: &|| false }
+}
+
+/// A number of ten bits that counts while an input is 1, and the signal of its overflow: 1024 steps lead there.
+pub(crate) fn counter() -> (System, Signal) {
+    let mut s = System::default();
+    let latches: Vec<Signal> = (0..10).map(|_| s.latch(false.into())).collect();
+    let mut carry = s.input();
+    for l in &latches {
+        let (next, over) = (s.graph.xor(*l, carry), s.graph.and(*l, carry));
+        s.set_next(*l, next);
+        carry = over;
+    }
+    (s, carry)
 }

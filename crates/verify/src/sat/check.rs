@@ -87,9 +87,9 @@ impl<'a> Checker<'a> {
     }
 }
 
-/// True if a set of states, given by the signals that the state is in it and that the one behind the step is, has the
-/// first state, if no step leads out of it, and if in it none of the signals `never` is 1. If the solver was stopped,
-/// by the caller or behind so many ticks, the answer is false.
+/// Checks a set of states. `here` is 1 if the state is in the set, `behind` if the state after the step is. True if the
+/// first state is in the set, no step leads out of it, and none of the signals `never` is 1 in it. False if the solver
+/// was stopped by the caller or by the limit of ticks.
 #[cfg(not(target_family = "wasm"))]
 pub(crate) fn keeps(
     system: &System,
@@ -112,8 +112,8 @@ pub(crate) fn keeps(
         solver.add(&literals);
         solver.solve(&[])
     };
-    // A solver that has nothing to decide does not ask whether to stop. A first step for which no inputs satisfy the
-    // constraints is none.
+    // `stop` is asked here too, because a solver that has nothing to decide never asks it. If no inputs satisfy the
+    // constraints in the first state, there are no runs at all, and the first question is answered *No*.
     !stop()
         && solves(Start::First, &[!here]) == Answer::No
         && solves(Start::Any, &[!behind]) == Answer::No

@@ -46,7 +46,7 @@ pub enum Proof {
         states: Option<u128>,
         /// Number of nodes of the diagram.
         nodes: usize,
-        /// The checker has agreed with the set. Else moves at random did not leave it.
+        /// True if the solver of the checker confirmed the set. If false, only random runs were tried; they stayed in it.
         checked: bool,
     },
 }

@@ -27,8 +27,8 @@ use crate::verdict::{Certificate, Evidence, Open, Run, Verdict, is_open};
 /// fewer, and each turn more allows twice as many.
 const SCANS: usize = 2_000_000;
 const SMALL: usize = 1000;
-/// Nodes of the diagrams of sets of states in the turn [`FEWEST`]; each turn more allows twice as many, up to a bound
-/// that one call of the library keeps within seconds.
+/// Nodes for the sets of states in the turn [`FEWEST`]. Each later turn allows twice as many, up to `MOST`: a call of
+/// the library cannot be stopped, and with more nodes it may take longer than seconds.
 #[cfg(not(target_family = "wasm"))]
 const ROOM: usize = 1 << 18;
 #[cfg(not(target_family = "wasm"))]
@@ -143,7 +143,8 @@ fn asks(model: &Model<'_>, claim: &Claim, runs: &[Run]) -> Option<Run> {
     replay(model, claim, &found).then_some(found)
 }
 
-/// A search for all states: what it says of signals, and where inputs satisfy the assumptions.
+/// A search for all states. It gives an answer for each signal, and tells whether every state has inputs that satisfy
+/// the assumptions.
 type Visit<'a> = fn(&Work<'a>, &[Signal]) -> Option<(Vec<Found>, Ends)>;
 
 struct Work<'a> {
@@ -194,8 +195,8 @@ impl Work<'_> {
         questions.iter().zip(&t.asked).zip(&t.follows).map(one).collect()
     }
 
-    /// Visits all states of what the solver has left open: as sets, and one by one if they are few enough for the
-    /// turn. Tells where inputs satisfy the assumptions.
+    /// Searches all states for the signals that the solver has left open: first as sets, then one by one within the
+    /// scans of this turn. Also tells whether every state has inputs that satisfy the assumptions.
     fn visit(&self, signals: &[Signal], found: &mut [Found]) -> Option<Ends> {
         let ways: [Visit<'_>; 2] = [Self::sets, Self::states];
         let mut known = None;

@@ -35,6 +35,15 @@ pub fn evaluate(graph: &Graph, latches: &[u64], inputs: &[u64]) -> Values {
     values
 }
 
+/// Words for inputs at random, the same in each run of the program.
+pub(crate) fn random() -> impl FnMut() -> u64 {
+    let mut x = 0x5EED_u64;
+    move || {
+        x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        x ^ x >> 32 ^ x << 29
+    }
+}
+
 /// A run of a system.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Trace {

@@ -30,16 +30,15 @@ pub(super) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Prob
         variables.push(Declared { name, ty, note, ..clock.clone() });
     }
     let mut p = Printer { values: Values::new(variables), loops: Vec::new(), depth: 0 };
-    for part in &e.parts {
-        if e.safe.is_some() {
-            p.when(&Ex::var("FAULT").not(), part);
-        } else {
-            p.block(part);
+    for (guard, part) in e.guarded() {
+        match guard {
+            None => p.block(part),
+            Some(false) => p.when(&Ex::var("FAULT").not(), part),
+            Some(true) => {
+                p.comment(FAULT_COMES);
+                p.when(&Ex::var("FAULT"), part);
+            }
         }
-    }
-    if let Some(safe) = e.safe.as_ref().filter(|safe| !safe.is_empty()) {
-        p.comment(FAULT_COMES);
-        p.when(&Ex::var("FAULT"), safe);
     }
     let (out, variables, mut cannot) = p.values.done();
     let head = declarations(e, &variables, &mut cannot);
@@ -246,7 +245,7 @@ impl Printer {
         self.values.line(&format!("CALL #{name} ({}, ET := #{NOW})", given.join(", ")));
     }
 
-    /// An element by its index, which is looked for.
+    /// Assigns to an element. AWL has no variable index here, so the index is compared with each place in turn.
     fn store_element(&mut self, name: &str, index: &Ex, e: &Ex) {
         if let Ex::Int(n) = index {
             return self.values.store(e, &format!("#{name}[{n}]"));

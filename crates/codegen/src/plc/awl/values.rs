@@ -13,7 +13,7 @@ use crate::plc::variables::Variables;
 
 /// Labels that four letters and digits have room for.
 const LABELS: usize = 36 * 36 * 36;
-/// Elements of a table up to which an index is looked for one by one.
+/// Tables with more elements than this are refused, because an index is compared with each place in turn.
 const LONG: u32 = 64;
 
 /// The time of the one timer: not every system reads members of an instance within an instance.
@@ -194,7 +194,15 @@ impl Values {
     /// A Boolean value as the result of logic.
     pub(super) fn logic(&mut self, e: &Ex) {
         let e = self.ready(e, 0);
-        match &e {
+        if !self.list(&e) {
+            self.contact(&e, 'A', false);
+        }
+    }
+
+    /// The instructions of a condition that begins anew: a list of contacts, a constant or a comparison. False for
+    /// another condition.
+    fn list(&mut self, e: &Ex) -> bool {
+        match e {
             Ex::And(list) => list.iter().for_each(|e| self.contact(e, 'A', false)),
             Ex::Or(list) => list.iter().for_each(|e| self.contact(e, 'O', false)),
             Ex::Xor(a, b) => {
@@ -203,8 +211,9 @@ impl Values {
             }
             Ex::Bool(b) => self.line(if *b { "SET" } else { "CLR" }),
             Ex::Op(sign, a, b) if is_comparison(sign) => self.comparison(sign, a, b),
-            e => self.contact(e, 'A', false),
+            _ => return false,
         }
+        true
     }
 
     /// A part of a list of logic.
@@ -215,16 +224,8 @@ impl Values {
             Ex::Var(_) | Ex::Index(..) => self.line(&format!("{by}{not} {}", variable(e))),
             e => {
                 self.line(&format!("{by}{not}("));
-                match e {
-                    Ex::And(list) => list.iter().for_each(|e| self.contact(e, 'A', false)),
-                    Ex::Or(list) => list.iter().for_each(|e| self.contact(e, 'O', false)),
-                    Ex::Xor(a, b) => {
-                        self.contact(a, 'X', false);
-                        self.contact(b, 'X', false);
-                    }
-                    Ex::Bool(b) => self.line(if *b { "SET" } else { "CLR" }),
-                    Ex::Op(sign, a, b) => self.comparison(sign, a, b),
-                    _ => self.cannot("this condition"),
+                if !self.list(e) {
+                    self.cannot("this condition");
                 }
                 self.line(")");
             }
@@ -323,7 +324,7 @@ impl Values {
         }
     }
 
-    /// An element by its index, which is looked for, in a memory.
+    /// Copies an element into a memory. The index is compared with each place in turn.
     fn element(&mut self, name: &str, index: &Ex) -> String {
         let index = Ex::Var(self.kept(index));
         let ty = self.variables.type_of(name).to_owned();

@@ -79,15 +79,7 @@ fn statements(list: &mut [St], f: &mut dyn FnMut(Ex) -> Ex) {
 }
 
 fn expression(e: &mut Ex, f: &mut dyn FnMut(Ex) -> Ex) {
-    match e {
-        Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => {}
-        Ex::Index(_, e) | Ex::Not(e) | Ex::Neg(e) => expression(e, f),
-        Ex::And(list) | Ex::Or(list) | Ex::Call(_, list) => list.iter_mut().for_each(|e| expression(e, f)),
-        Ex::Xor(a, b) | Ex::Op(_, a, b) => {
-            expression(a, f);
-            expression(b, f);
-        }
-    }
+    e.inner_mut().into_iter().for_each(|inner| expression(inner, f));
     let own = std::mem::replace(e, Ex::Bool(false));
     *e = f(own);
 }

@@ -7,7 +7,7 @@ use g7_iec::xml::element::Element;
 use g7_model::{Problem, Span};
 
 use super::rewrite::{self, Refused};
-use crate::plc::form::{Block, Class, Declared, Ex};
+use crate::plc::form::{Block, Declared, Ex};
 use crate::plc::st;
 
 /// The source, and the table of tags.
@@ -25,19 +25,9 @@ pub(crate) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Prob
     for note in &e.notes {
         let _ = writeln!(out, "// {}", st::plain(note));
     }
-    let heads = [
-        (Class::Input, "VAR_INPUT"),
-        (Class::Output, "VAR_OUTPUT"),
-        (Class::Retain, "VAR RETAIN"),
-        (Class::Internal, "VAR"),
-    ];
-    for (class, head) in heads {
-        let mut list = own.variables.iter().filter(|v| v.class == class).peekable();
-        if list.peek().is_none() {
-            continue;
-        }
+    for (head, list) in st::sections(&own.variables) {
         let _ = writeln!(out, "   {head}");
-        list.for_each(|v| out += &declared(v));
+        list.into_iter().for_each(|v| out += &declared(v));
         out += "   END_VAR\n";
     }
     let _ = write!(

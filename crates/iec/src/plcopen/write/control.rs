@@ -462,28 +462,13 @@ fn receptivities(chart: &mut Chart, reader: &mut Reader) {
     }
 }
 
-/// All names of a document.
+/// All names of a document, those of transition sections too.
 fn names(document: &Document) -> Taken {
-    let mut taken = Taken::default();
-    let mut take = |name: &Name| _ = taken.take(&name.text);
-    for item in &document.items {
-        match item {
-            Item::Var(v) => v.names.iter().for_each(&mut take),
-            Item::Function(f) => take(&f.name),
-            Item::Chart(c) => {
-                take(&c.name);
-                for item in &c.items {
-                    match item {
-                        ChartItem::Var(v) => v.names.iter().for_each(&mut take),
-                        ChartItem::Step(s) => take(&s.name),
-                        ChartItem::Action(a) => take(&a.name),
-                        ChartItem::Section(s) => take(&s.name),
-                        ChartItem::Transition(t) => t.label.iter().for_each(&mut take),
-                        ChartItem::Pre(..) | ChartItem::Post(..) => {}
-                    }
-                }
-            }
-            _ => {}
+    let mut taken = Taken::of(document);
+    let items = document.charts().flat_map(|c| &c.items);
+    for item in items {
+        if let ChartItem::Section(s) = item {
+            taken.take(&s.name.text);
         }
     }
     taken

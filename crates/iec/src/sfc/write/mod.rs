@@ -8,9 +8,7 @@ mod chart;
 
 use std::collections::HashSet;
 
-use g7_model::{
-    Body, Chart, ChartItem, Document, Expr, Function, Item, Nanos, Problem, Type, VarDecl, VarKind,
-};
+use g7_model::{Body, Chart, Document, Expr, Function, Item, Nanos, Problem, Type, VarDecl, VarKind};
 
 use crate::Written;
 use crate::nodes::Taken;
@@ -42,28 +40,7 @@ struct Exporter<'d> {
 
 impl<'d> Exporter<'d> {
     fn new(document: &'d Document) -> Exporter<'d> {
-        let mut taken = Taken::default();
-        let mut take = |name: &g7_model::Name| _ = taken.take(&name.text);
-        for item in &document.items {
-            match item {
-                Item::Var(v) => v.names.iter().for_each(&mut take),
-                Item::Function(f) => take(&f.name),
-                Item::Chart(c) => {
-                    take(&c.name);
-                    for item in &c.items {
-                        match item {
-                            ChartItem::Var(v) => v.names.iter().for_each(&mut take),
-                            ChartItem::Step(s) => take(&s.name),
-                            ChartItem::Action(a) => take(&a.name),
-                            ChartItem::Transition(t) => t.label.iter().for_each(&mut take),
-                            _ => {}
-                        }
-                    }
-                }
-                _ => {}
-            }
-        }
-        Exporter { document, taken, problems: Vec::new() }
+        Exporter { document, taken: Taken::of(document), problems: Vec::new() }
     }
 
     fn text(&mut self) -> String {

@@ -1,4 +1,4 @@
-//! The set of all states, counted, and as a signal of the system, so that a solver of its own can check it.
+//! Counts the states of a set, and turns the set into a signal of the system, so that a separate solver can check it.
 
 use std::collections::HashMap;
 
@@ -42,7 +42,7 @@ fn rows(set: &Function) -> Vec<Row> {
 
 /// The number of states in a set; nothing if it does not fit.
 pub(super) fn count(f: &Functions<'_>, set: &Function) -> Option<u128> {
-    // A variable that stands between a node and its branch has either value.
+    // A variable that a branch skips may have either value, so it doubles the number of states.
     let mut variables: Vec<u32> = f.latches.values().copied().collect();
     variables.sort_unstable();
     let level = |variable: u32| variables.binary_search(&variable).unwrap_or_else(|at| at);

@@ -1,8 +1,7 @@
-//! The functions of a system as decision diagrams, as far as they matter: where a state is one of those that are
-//! thought to be reached.
+//! The functions of a system as decision diagrams, limited to the care set: the states that satisfy the guesses.
 //!
-//! Each function is 0 outside of what matters ([`Functions::care`]), its negation too. Inside both are exact, whether
-//! the thought is right or not; the caller stops where a state outside is reached.
+//! Outside the care set every function is 0, and so is its negation. Inside it both are exact, even if a guess is
+//! wrong. The caller stops as soon as a state outside is reached.
 
 use std::collections::BTreeMap;
 
@@ -12,18 +11,13 @@ use super::order::Place;
 use crate::sat::cone::Cube;
 use crate::sat::graph::{Node, Signal, System};
 
-/// Why a diagram was not made.
+/// The work ends early: the diagrams need too many nodes or levels, or the caller wants no more work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Stop {
-    /// It needs more nodes than there is room for.
-    Full,
-    /// The caller wants no more work.
-    Wanted,
-}
+pub(super) struct Stop;
 
 impl From<Full> for Stop {
     fn from(_: Full) -> Stop {
-        Stop::Full
+        Stop
     }
 }
 
@@ -40,15 +34,15 @@ pub(super) struct Functions<'s> {
     pub(super) inputs: BTreeMap<usize, u32>,
     /// For each node that is needed its function.
     nodes: BTreeMap<u32, Function>,
-    /// The states that are thought to be reached.
+    /// The states that satisfy the guesses.
     pub(super) thought: Function,
-    /// The same with inputs that may be tried, but for the constraints of the system.
+    /// The care set: these states, with the inputs that may be tried. The constraints of the system do not count here.
     care: Function,
 }
 
 impl<'s> Functions<'s> {
-    /// No functions yet, for variables in this order. The states of the cubes `never` are thought not to be reached;
-    /// with `alone`, at most one input is 1.
+    /// Prepares variables in this order; no function is made yet. The guesses are that no state of the cubes `never` is
+    /// reached. With `alone`, at most one input is 1 in a scan.
     pub(super) fn new(
         system: &'s System,
         order: &[Place],
@@ -95,7 +89,7 @@ impl<'s> Functions<'s> {
     /// An error as soon as the caller wants no more work.
     pub(super) fn look(&self) -> Result<(), Stop> {
         if (self.stop)() {
-            return Err(Stop::Wanted);
+            return Err(Stop);
         }
         self.diagrams.tidy();
         Ok(())
@@ -117,7 +111,7 @@ impl<'s> Functions<'s> {
 
     fn at_most_one(&self) -> Result<Function, Stop> {
         let (mut none, mut one) = (self.diagrams.constant(true), self.diagrams.constant(false));
-        // The last ones first: so nothing that is made is made again.
+        // From the last variable to the first, so that each diagram grows at its top.
         for place in self.inputs.values().rev() {
             let input = self.diagrams.variable(*place)?;
             one = input.choose(&none, &one)?;
@@ -126,7 +120,7 @@ impl<'s> Functions<'s> {
         Ok(none.or(&one)?)
     }
 
-    /// Makes the functions of the part `inside`; only those of the roots are kept.
+    /// Makes the functions of all nodes `inside`. A function is dropped after its last use, except those of the roots.
     pub(super) fn make(&mut self, inside: &[bool], roots: impl Iterator<Item = Signal>) -> Result<(), Stop> {
         let nodes = self.system.graph.nodes();
         let mut uses = vec![0usize; nodes.len()];

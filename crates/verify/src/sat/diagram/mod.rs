@@ -1,5 +1,5 @@
-//! A search for all states of a system at once: sets of states as decision diagrams, level by level. A chart of many
-//! sequences side by side has more states than any search visits one by one, and often a small diagram.
+//! A search for all states of a system that handles sets of states, not single states. Each set is a decision
+//! diagram. A chart of many sequences side by side has too many states to visit one by one, but often a small diagram.
 //!
 //! ```text
 //! System -> order (of the variables) -> functions -> relation (one scan) -> levels -> certificate (count, check)
@@ -8,13 +8,14 @@
 //!
 //! # Invariants
 //!
-//! - The states behind a level are exactly those behind one scan of it: so no run is shorter than one that is found.
-//! - What is thought about the states (no two steps of a sequence are active at once) makes diagrams small and is
-//!   given up where a level disagrees; then the search begins again.
-//! - *Never* is said only after no level was left, and the checker's solver or states at random agreed.
+//! - Level `n` has exactly the states that `n` scans reach and fewer do not. So every run that is found is a shortest one.
+//! - Guesses about the states (for example: two steps of a sequence are never active together) keep diagrams small.
+//!   Each level is checked against them. If a level contradicts a guess, the guess is dropped and the search starts again.
+//! - The answer is *never* only if all levels were made, and the solver of the checker confirmed the set or random
+//!   runs stayed in it.
 //! - A run is given only if [`shows`] repeats it.
-//! - What is found depends on the system and the room for nodes alone, unless the caller stops the work or nodes
-//!   run out at a time when the library has not yet removed those that nobody has.
+//! - The result depends only on the system and on the room for nodes. Two exceptions: the caller stops the work, or
+//!   the nodes run out before the library has removed unused ones.
 
 mod certificate;
 mod functions;
@@ -32,28 +33,26 @@ use crate::sat::cone::{Cube, cone};
 use crate::sat::dead::Ends;
 use crate::sat::decide::{Found, Proof};
 use crate::sat::graph::{Latch, Signal, System};
-use crate::sat::simulate::{Trace, evaluate, shows};
+use crate::sat::simulate::{Trace, evaluate, random, shows};
 use crate::sat::wide::{Tries, Wanted};
 use certificate::{count, is_checked};
 use functions::{Functions, Stop};
 use order::order;
 use relation::Relation;
 
-/// Most levels: a long time that is counted scan by scan has more, and other layers pass it at once.
+/// The search gives up after this many levels. A time counted scan by scan has more; the zones answer such charts.
 const LEVELS: usize = 4096;
-/// How often the search begins again with fewer thoughts, before it goes on with none.
+/// The search starts again at most this often with fewer guesses; after that it starts with none.
 const AGAIN: usize = 3;
-/// Moves of states at random that must stay in the set, 64 at a time, where the solver does not check it.
+/// Scans of the random runs (64 runs side by side) that must stay in the set if the solver did not check it.
 const SAMPLES: usize = 64;
-/// Bytes for each node of the room, with what is made on the way.
-const EACH: usize = Diagrams::BYTES;
 
 /// How much may be done.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Effort {
-    /// Most nodes of diagrams.
+    /// Room for this many nodes in all diagrams together.
     pub(crate) nodes: usize,
-    /// Most ticks of the solver that checks the result.
+    /// The solver that checks the result stops after this many ticks.
     pub(crate) ticks: u64,
 }
 
@@ -72,8 +71,8 @@ pub(crate) struct Seen {
     pub(crate) is_whole: bool,
 }
 
-/// Searches all states. Nothing where the system has states that begin with any value, or too little room for its
-/// functions. The cubes `never` are thought not to be reached.
+/// Searches all states. `None` if a latch has no fixed initial value, or if the functions do not fit into the room.
+/// `never` has cubes that the chart suggests are never reached; they are guesses and need not be true.
 pub(crate) fn diagram(
     system: &System,
     wanted: &Wanted<'_>,
@@ -89,7 +88,7 @@ pub(crate) fn diagram(
         return None;
     }
     let order = order(system, &inside, guards);
-    let nodes = effort.nodes.min(budget.bytes / EACH);
+    let nodes = effort.nodes.min(budget.bytes / Diagrams::BYTES);
     let mut never: Vec<Cube> = never.iter().filter(|c| c.iter().all(|s| is_in(*s))).cloned().collect();
     let mut again = 0;
     loop {
@@ -103,7 +102,7 @@ pub(crate) fn diagram(
         let (f, relation) = made.ok()?;
         let mut search = Search::new(&f, &relation, signals, all);
         match search.run() {
-            // More of what was thought is wrong than was seen so far.
+            // Too many guesses are wrong.
             Ok(Some(_)) if again == AGAIN => never.clear(),
             Ok(Some(outside)) => never
                 .retain(|c| f.cube(c).and_then(|c| Ok(c.and(&outside)?)).is_ok_and(|both| both.is_none())),
@@ -148,8 +147,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Makes all levels. Gives the states that are reached though they were thought not to be; then it has ended
-    /// too early.
+    /// Makes all levels. If a level contradicts the guesses, it stops there and returns the states that do.
     fn run(&mut self) -> Result<Option<Function>, Stop> {
         let mut level = self.f.cube(&self.start())?;
         let fed = self.relation.valid.exists(&self.relation.inputs)?;
@@ -158,7 +156,7 @@ impl<'a> Search<'a> {
         let asked = asked?;
         while !level.is_none() {
             if self.levels.len() == LEVELS {
-                return Err(Stop::Full);
+                return Err(Stop);
             }
             let outside = level.without(&self.f.thought)?;
             if !outside.is_none() {
@@ -247,19 +245,15 @@ impl<'a> Search<'a> {
         Seen { found: found.collect(), ends, states, depth, is_whole: self.is_whole }
     }
 
-    /// True if moves at random from the first state stay in the set and show none of these signals. It reads the
-    /// system itself.
+    /// True if random runs from the first state stay in the set and show none of these signals. The runs evaluate the
+    /// graph of the system; they do not use the diagrams.
     fn is_closed(&self, never: &[Signal]) -> bool {
         let system = self.f.system;
-        let mut x = 0x5EED_u64;
-        let mut random = || {
-            x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            x ^ x >> 32 ^ x << 29
-        };
+        let mut random = random();
         let start = |l: &Latch| 0u64.wrapping_sub(u64::from(l.init.value() == Some(true)));
         let first: Vec<u64> = system.latches.iter().map(start).collect();
         let mut latches = first.clone();
-        // In patterns of which the inputs do not satisfy the constraints, the run begins again.
+        // Where the random inputs break a constraint, that run starts again from the first state.
         (0..SAMPLES).all(|_| {
             let inputs: Vec<u64> = system.inputs.iter().map(|_| random() & random()).collect();
             let values = evaluate(&system.graph, &latches, &inputs);

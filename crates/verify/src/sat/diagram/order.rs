@@ -1,8 +1,8 @@
 //! The order of the variables of a diagram, which decides how large it is.
 //!
-//! Variables that are read together stand together. Latch by latch: next comes the one that needs the fewest variables that
-//! do not stand yet, and of two such ones the one that reads more of those that do. A latch reads what its function
-//! reads where the scan has one pass: through the passes behind it, each reads all.
+//! Variables that are read together should stand together. The latches are placed one after the other. The next one
+//! is always the latch that brings the fewest new variables; if two are equal, the one that reads more placed ones.
+//! Only the first pass of a scan counts as reading: through later passes every latch reads nearly every variable.
 
 use std::collections::BTreeSet;
 

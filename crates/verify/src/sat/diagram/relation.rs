@@ -1,7 +1,7 @@
 //! The states behind one scan of a set of states.
 //!
-//! Each latch has a relation of this state and these inputs with its next value. Small relations are joined. A
-//! variable is left out as soon as no later relation reads it.
+//! Each latch has a relation between state, inputs and its next value. Small relations are joined. A variable is
+//! quantified away after the last relation that reads it.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -12,7 +12,7 @@ use super::functions::{Functions, Stop};
 /// Nodes of the largest relation that several latches share.
 const JOINED: usize = 1000;
 
-/// A relation, and the variables that no later one reads.
+/// A relation, and the variables that are quantified away after it.
 struct Part {
     relation: Function,
     gone: Function,

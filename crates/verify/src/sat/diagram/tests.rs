@@ -1,9 +1,9 @@
-//! The sets beside a search that tries each combination of inputs by itself, on random systems and on systems with
+//! Compares the sets with a search that tries every combination of inputs, on random systems and on systems with
 //! numbers.
 
 use super::{Effort, Seen, diagram};
 use crate::layer::Budget;
-use crate::sat::brute::{Random, by_hand, numbers, shortest, system};
+use crate::sat::brute::{Random, by_hand, counter, numbers, shortest, system, unlimited};
 use crate::sat::cone::{Cube, cone};
 use crate::sat::dead::Ends;
 use crate::sat::graph::{Signal, System};
@@ -12,10 +12,6 @@ use crate::sat::{Found, Proof, Tries, Wanted};
 
 const EFFORT: Effort = Effort { nodes: 1 << 14, ticks: 1 << 20 };
 const ROOMY: Effort = Effort { nodes: 1 << 18, ..EFFORT };
-
-fn budget() -> Budget<'static> {
-    Budget { states: usize::MAX, scans: usize::MAX, bytes: usize::MAX, stop: &|| false }
-}
 
 /// The number of steps of the run, if there is one; the run is repeated, a proof is one that the solver checked.
 fn steps(s: &System, signal: Signal, found: &Found) -> Option<usize> {
@@ -29,7 +25,7 @@ fn steps(s: &System, signal: Signal, found: &Found) -> Option<usize> {
     }
 }
 
-/// Cubes of latches, some of which are reached.
+/// Random guesses. Some of them are wrong: a run reaches the cube, and the search must drop it.
 fn thoughts(s: &System, seed: u64) -> Vec<Cube> {
     let mut r = Random(seed);
     let cube = |r: &mut Random| -> Cube {
@@ -48,7 +44,7 @@ fn runs_are_the_shortest_and_no_state_is_left_out() {
         let signals = [bad, !bad];
         let guards = [bad];
         let wanted = Wanted::of(&signals, &guards, 1);
-        let Some(seen) = diagram(&s, &wanted, &thoughts(&s, seed), EFFORT, &budget()) else {
+        let Some(seen) = diagram(&s, &wanted, &thoughts(&s, seed), EFFORT, &unlimited()) else {
             let inside = cone(&s, s.constraints.iter().copied().chain(signals));
             let is_in = |l: &Signal| inside[l.node() as usize];
             assert!(s.latches.iter().any(|l| is_in(&l.signal) && l.init.value().is_none()), "seed {seed}");
@@ -70,7 +66,7 @@ fn states_are_counted() {
         let (s, signals) = numbers(seed);
         let (states, first, stuck) = by_hand(&s, &signals);
         let wanted = Wanted { all: true, ..Wanted::of(&signals, &signals, 1) };
-        let seen = diagram(&s, &wanted, &thoughts(&s, seed), EFFORT, &budget()).expect("it is small");
+        let seen = diagram(&s, &wanted, &thoughts(&s, seed), EFFORT, &unlimited()).expect("it is small");
         assert_eq!(seen.states, Some(states as u128), "seed {seed}");
         let mine: Vec<_> = signals.iter().zip(&seen.found).map(|(s1, f)| steps(&s, *s1, f)).collect();
         assert_eq!(mine, first, "seed {seed}");
@@ -80,7 +76,7 @@ fn states_are_counted() {
 
 #[test]
 fn a_state_that_no_inputs_leave_is_seen() {
-    // A number of two bits that counts; at 3 both inputs are wanted, and never together.
+    // A two-bit counter. In state 3 one constraint wants both inputs at once, and another one forbids that.
     let mut s = System::default();
     let (a, b) = (s.input(), s.input());
     let (low, high) = (s.latch(false.into()), s.latch(false.into()));
@@ -91,7 +87,7 @@ fn a_state_that_no_inputs_leave_is_seen() {
     let wanted = s.graph.implies(three, both);
     let ends = |s: &System| {
         let signals = [carry];
-        diagram(s, &Wanted { all: true, ..Wanted::of(&signals, &[], 1) }, &[], EFFORT, &budget())
+        diagram(s, &Wanted { all: true, ..Wanted::of(&signals, &[], 1) }, &[], EFFORT, &unlimited())
             .expect("it is small")
             .ends
     };
@@ -115,7 +111,7 @@ fn bits(count: usize) -> System {
 }
 
 fn all_of(s: &System, tries: Tries) -> Seen {
-    diagram(s, &Wanted { all: true, tries, ..Wanted::of(&[], &[], 1) }, &[], ROOMY, &budget())
+    diagram(s, &Wanted { all: true, tries, ..Wanted::of(&[], &[], 1) }, &[], ROOMY, &unlimited())
         .expect("it is small")
 }
 
@@ -130,33 +126,25 @@ fn numbers_of_states_that_no_search_visits() {
 
 #[test]
 fn a_budget_that_is_used_up_is_no_proof() {
-    // A number of ten bits that counts.
-    let mut s = System::default();
-    let latches: Vec<Signal> = (0..10).map(|_| s.latch(false.into())).collect();
-    let mut carry = s.input();
-    for l in &latches {
-        let (next, over) = (s.graph.xor(*l, carry), s.graph.and(*l, carry));
-        s.set_next(*l, next);
-        carry = over;
-    }
+    let (s, carry) = counter();
     let signals = [carry];
     let wanted = Wanted::of(&signals, &[], 1);
     let of = |budget: &Budget<'_>| diagram(&s, &wanted, &[], EFFORT, budget);
-    assert_eq!(steps(&s, carry, &of(&budget()).expect("it is small").found[0]), Some(1024));
-    assert!(of(&Budget { stop: &|| true, ..budget() }).is_none());
+    assert_eq!(steps(&s, carry, &of(&unlimited()).expect("it is small").found[0]), Some(1024));
+    assert!(of(&Budget { stop: &|| true, ..unlimited() }).is_none());
     let looks = std::sync::atomic::AtomicUsize::new(0);
     let later = || looks.fetch_add(1, std::sync::atomic::Ordering::Relaxed) > 200;
-    let seen = of(&Budget { stop: &later, ..budget() }).expect("its functions are made");
+    let seen = of(&Budget { stop: &later, ..unlimited() }).expect("its functions are made");
     assert!(matches!(seen.found[0], Found::Open(n) if n > 5), "{seen:?}");
     assert_eq!((seen.ends, seen.is_whole), (Ends::Open, false));
 }
 
-/// A set that the solver has no time for is tried at random, and said to be.
+/// If the solver has no time to check a set, random runs try it, and the proof says so.
 #[test]
 fn a_set_that_is_not_checked_says_so() {
     let (s, signals) = numbers(3);
     let wanted = Wanted { all: true, ..Wanted::of(&signals, &[], 1) };
-    let seen = diagram(&s, &wanted, &[], Effort { ticks: 0, ..EFFORT }, &budget()).expect("it is small");
+    let seen = diagram(&s, &wanted, &[], Effort { ticks: 0, ..EFFORT }, &unlimited()).expect("it is small");
     let proofs =
         seen.found.iter().filter(|f| matches!(f, Found::Never(Proof::Diagram { checked: false, .. })));
     assert!(proofs.count() > 0 || seen.found.iter().all(|f| matches!(f, Found::Reached(_))));

@@ -28,7 +28,7 @@ use crate::reason::Reason;
 use crate::sat::dead::Ends;
 use crate::sat::decide::{Found, Proof};
 use crate::sat::graph::{Signal, System};
-use crate::sat::simulate::{Trace, evaluate, shows};
+use crate::sat::simulate::{Trace, evaluate, random, shows};
 use program::Program;
 use search::Search;
 pub use wanted::Tries;
@@ -123,11 +123,7 @@ fn trace(system: &System, program: &Program, inputs: &[Vec<u64>]) -> Trace {
 /// True if moves at random from some of the states lead to states that were visited, and show no signal
 /// that no run is said to show. It reads the system itself, and all inputs are any.
 fn is_closed(system: &System, signals: &[Signal], program: &Program, search: &Search<'_>) -> bool {
-    let mut x = 0x5EED_u64;
-    let mut random = || {
-        x = x.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        x ^ x >> 32 ^ x << 29
-    };
+    let mut random = random();
     let width = program.latches.len() / 64 + 1;
     search.some(SAMPLE).all(|row| {
         let mut latches = vec![0; system.latches.len()];

@@ -4,16 +4,12 @@
 use super::{Tries, Wanted, Wide, wide};
 use crate::layer::Budget;
 use crate::reason::Reason;
-use crate::sat::brute::{by_hand, numbers, shortest, system};
+use crate::sat::brute::{by_hand, counter, numbers, shortest, system, unlimited};
 use crate::sat::cone::cone;
 use crate::sat::dead::Ends;
 use crate::sat::graph::{Signal, System};
 use crate::sat::simulate::shows;
 use crate::sat::{Found, Proof};
-
-fn budget() -> Budget<'static> {
-    Budget { states: usize::MAX, scans: usize::MAX, bytes: usize::MAX, stop: &|| false }
-}
 
 /// The number of steps of the run, if there is one; the run is repeated.
 fn steps(s: &System, signal: Signal, found: &Found) -> Option<usize> {
@@ -35,7 +31,7 @@ fn runs_are_the_shortest_and_no_state_is_left_out() {
         for (together, threads) in [(0, 1), (6, 1), (1, 3)] {
             let signals = [bad, !bad];
             let Some(seen) =
-                wide(&s, &Wanted { together, ..Wanted::of(&signals, &[bad], threads) }, &budget())
+                wide(&s, &Wanted { together, ..Wanted::of(&signals, &[bad], threads) }, &unlimited())
             else {
                 let inside = cone(&s, s.constraints.iter().copied().chain(signals));
                 let is_in = |l: &Signal| inside[l.node() as usize];
@@ -71,7 +67,7 @@ fn many_inputs_are_split_where_they_matter() {
             let w = wide(
                 &s,
                 &Wanted { all: true, together, ..Wanted::of(&signals, &signals, threads) },
-                &budget(),
+                &unlimited(),
             )
             .expect("it is small");
             assert_eq!(w.states, states, "seed {seed}");
@@ -98,7 +94,7 @@ fn at_most_one_input_is_1_if_it_is_asked_for() {
     let both = s.graph.and(a, b);
     s.set_next(l, both);
     let of = |tries| {
-        wide(&s, &Wanted { all: true, tries, ..Wanted::of(&[l], &[], 1) }, &budget())
+        wide(&s, &Wanted { all: true, tries, ..Wanted::of(&[l], &[], 1) }, &unlimited())
             .expect("it is small")
             .states
     };
@@ -107,23 +103,15 @@ fn at_most_one_input_is_1_if_it_is_asked_for() {
 
 #[test]
 fn a_budget_that_is_used_up_is_no_proof() {
-    // A number of ten bits that counts.
-    let mut s = System::default();
-    let latches: Vec<Signal> = (0..10).map(|_| s.latch(false.into())).collect();
-    let mut carry = s.input();
-    for l in &latches {
-        let (next, over) = (s.graph.xor(*l, carry), s.graph.and(*l, carry));
-        s.set_next(*l, next);
-        carry = over;
-    }
+    let (s, carry) = counter();
     let of = |budget: &Budget<'_>| -> Wide {
         wide(&s, &Wanted::of(&[carry], &[], 2), budget).expect("it is small")
     };
-    assert_eq!(steps(&s, carry, &of(&budget()).found[0]), Some(1024));
-    let few = Budget { states: 100, ..budget() };
+    assert_eq!(steps(&s, carry, &of(&unlimited()).found[0]), Some(1024));
+    let few = Budget { states: 100, ..unlimited() };
     let seen = of(&few);
     assert!(matches!(seen.found[0], Found::Open(n) if (90..110).contains(&n)), "{seen:?}");
     assert_eq!((seen.open, seen.ends), (Some(Reason::States(100)), Ends::Open));
-    let none = Budget { stop: &|| true, ..budget() };
+    let none = Budget { stop: &|| true, ..unlimited() };
     assert_eq!(of(&none).open, Some(Reason::Stopped));
 }

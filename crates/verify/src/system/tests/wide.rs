@@ -1,5 +1,5 @@
-//! The searches for all states of the system, one by one and as sets, beside the search with the engine: the same
-//! verdicts, and runs of the same length.
+//! Three searches must give the same verdicts, and runs of the same length: the search with the engine, the search of
+//! the system state by state, and the search of the system by sets.
 //!
 //! `G7_CHARTS` is the number of random charts a profile, `G7_SEED` the first.
 
@@ -26,12 +26,12 @@ struct Agreed {
     runs: usize,
     proofs: usize,
     open: usize,
-    /// Signals on which both searches of the system have said the same.
+    /// Signals that both searches of the system have decided.
     sets: usize,
 }
 
-/// The search by sets says of each signal what the one state by state says. Gives the number of signals that both
-/// have decided.
+/// Checks that the search by sets decides each signal as the search state by state does. Returns the number of
+/// signals that both have decided.
 fn sets_agree(t: &Translated, signals: &[Signal], seen: &Wide, text: &str) -> usize {
     let budget = Budget { states: 0, scans: 0, bytes: 64 << 20, stop: &|| false };
     let effort = Effort { nodes: 1 << 16, ticks: 1 << 16 };
@@ -45,7 +45,7 @@ fn sets_agree(t: &Translated, signals: &[Signal], seen: &Wide, text: &str) -> us
     let pairs = seen.found.iter().zip(&sets.found).map(|(a, b)| (steps(a), steps(b)));
     let both: Vec<_> = pairs.filter(|(a, b)| a.is_some() && b.is_some()).collect();
     assert!(both.iter().all(|(a, b)| a == b), "{both:?}\n{text}");
-    // One that has found all signals may have ended before.
+    // A search that has shown all signals stops early and does not know the ends.
     if seen.ends != Ends::Open && sets.ends != Ends::Open {
         assert_eq!(seen.ends, sets.ends, "{text}");
     }
