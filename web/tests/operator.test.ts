@@ -77,7 +77,7 @@ test('a machine is started and stopped, and its values are seen', async () => {
   await shows(page, 'fill', 'TRUE');
   assert.equal(await row(page, 'fill').evaluate((li) => li.classList.contains('on')), true, 'its lamp is lit');
   // The drawing shows the same situation.
-  await page.locator('.machine .live path.on:not([d=""])').waitFor({ state: 'attached' });
+  await page.locator('.machine .live path.on[d^="M"]').waitFor({ state: 'attached' });
   await until(async () => /^\d/.test((await steps.locator('td').first().innerText()) ?? ''), 'the time of the step');
   await button(page, 'Stop').click();
   await mode(page, 'stop');
@@ -158,7 +158,7 @@ test('a changed chart is taken over while the machine runs, and taken back', asy
   await steps.getByText('stirring slowly').waitFor();
   await row(page, 'speed').getByText('turns of the stirrer').waitFor();
   await shows(page, 'speed', '120');
-  await page.locator('.machine .live path.on:not([d=""])').waitFor({ state: 'attached' });
+  await page.locator('.machine .live path.on[d^="M"]').waitFor({ state: 'attached' });
   assert.match(await card(page, 'Alarms and events').innerText(), /goes on with the changed chart/);
   await bar.getByText('The chart was changed while it ran.').waitFor();
   await page.setViewportSize(PHONE);
@@ -253,7 +253,7 @@ test('a lost connection is seen at once, and no value looks present', async () =
     assert.equal(await page.locator('.live path.on').getAttribute('d'), '', 'no step is drawn as active');
   };
   // The drawing comes from the server as well, and must be there before the server is silent.
-  await page.locator('.live path.on:not([d=""])').waitFor({ state: 'attached' });
+  await page.locator('.live path.on[d^="M"]').waitFor({ state: 'attached' });
   // The network holds everything back: nothing is closed, nothing comes.
   machine.freeze(true);
   await gone();
