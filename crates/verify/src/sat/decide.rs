@@ -10,6 +10,7 @@ use crate::sat::check::Checker;
 use crate::sat::cone::{Cube, cone};
 use crate::sat::graph::{Signal, System};
 use crate::sat::kept::kept;
+use crate::sat::needs::Needs;
 use crate::sat::pdr::{Outcome, Pdr};
 use crate::sat::relate::relations;
 use crate::sat::simulate::{Trace, shows};
@@ -78,14 +79,23 @@ pub fn decide(system: &System, signals: &[Signal], effort: &Effort<'_>) -> Vec<F
 }
 
 /// The same, with cubes that are thought never to be reached. Those of which one step shows it help the search.
+/// Signals that are not needed any more stay open.
 pub(crate) fn decide_with(
     system: &System,
     signals: &[Signal],
+    needs: &Needs,
     candidates: &[Cube],
     effort: &Effort<'_>,
 ) -> Vec<Found> {
     let mut work = Decide::new(system, signals, effort);
-    work.learn(candidates);
+    work.needs = Some(needs);
+    // To learn is much more work than to see a run of few steps.
+    if effort.turns > 0 {
+        work.search(FIRST / 4);
+    }
+    if !work.is_over() {
+        work.learn(candidates);
+    }
     work.run()
 }
 
@@ -134,6 +144,8 @@ struct Decide<'a> {
     later: Vec<Cube>,
     /// A run that shows one signal ends the work.
     first: bool,
+    /// The signals that runs make needless.
+    needs: Option<&'a Needs>,
 }
 
 impl<'a> Decide<'a> {
@@ -153,6 +165,7 @@ impl<'a> Decide<'a> {
             lemmas: Vec::new(),
             later: Vec::new(),
             first: false,
+            needs: None,
         }
     }
 
@@ -217,13 +230,19 @@ impl<'a> Decide<'a> {
     /// True if there is nothing left to do, or no time.
     fn is_over(&self) -> bool {
         let reached = || self.answers.iter().any(|a| matches!(a, Some(Found::Reached(_))));
-        self.answers.iter().all(Option::is_some) || self.first && reached() || (self.effort.stop)()
+        (0..self.answers.len()).all(|i| !self.is_open(i)) || self.first && reached() || (self.effort.stop)()
+    }
+
+    /// True if a signal is not decided and still needed.
+    fn is_open(&self, i: usize) -> bool {
+        let is_shown = |k: usize| matches!(self.answers.get(k), Some(Some(Found::Reached(_))));
+        self.answers.get(i).is_some_and(Option::is_none)
+            && self.needs.is_none_or(|n| n.is_needed(i, is_shown))
     }
 
     /// The numbers of the signals that are not decided, those that depend on little first.
     fn open(&self) -> Vec<usize> {
-        let is_open = |i: &usize| self.answers.get(*i).is_some_and(Option::is_none);
-        let mut open: Vec<usize> = (0..self.wanted.len()).filter(is_open).collect();
+        let mut open: Vec<usize> = (0..self.wanted.len()).filter(|i| self.is_open(*i)).collect();
         open.sort_by_key(|i| self.wanted.get(*i).map(|w| w.size));
         open
     }
@@ -240,7 +259,7 @@ impl<'a> Decide<'a> {
     /// Bounded search, step by step.
     fn search(&mut self, ticks: u64) {
         let mut wanted: Vec<(usize, Signal)> = (0..self.wanted.len())
-            .filter(|i| self.answers.get(*i).is_some_and(Option::is_none))
+            .filter(|i| self.is_open(*i))
             .filter_map(|i| self.wanted.get(i).map(|w| (i, w.signal)))
             .collect();
         self.bounded.allow(ticks);

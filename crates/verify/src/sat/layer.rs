@@ -16,6 +16,7 @@ use crate::sat::decide::{Effort, Found, Proof, decide_with};
 #[cfg(not(target_family = "wasm"))]
 use crate::sat::diagram::{Effort as Sets, diagram};
 use crate::sat::graph::Signal;
+use crate::sat::needs::Needs;
 use crate::sat::simulate::Trace;
 use crate::sat::stays::is_trap;
 use crate::sat::traps::{Clauses, Trap, Way, traps};
@@ -160,9 +161,11 @@ impl Work<'_> {
         let mut signals: Vec<Signal> = asked.iter().flat_map(|a| [a.bad, a.unsure]).collect();
         signals.sort_unstable();
         signals.dedup();
+        let pairs: Vec<[Signal; 2]> = asked.iter().map(|a| [a.bad, a.unsure]).collect();
+        let needs = Needs::new(&signals, &pairs);
         let candidates = &self.translated.candidates;
-        let mut found = decide_with(&self.translated.system, &signals, candidates, self.effort);
-        let seen = self.visit(&signals, &mut found);
+        let mut found = decide_with(&self.translated.system, &signals, &needs, candidates, self.effort);
+        let seen = self.visit(&signals, &needs, &mut found);
         let of = |s: Signal| {
             let at = signals.binary_search(&s).ok();
             at.and_then(|at| found.get(at)).unwrap_or(&Found::Open(0))
@@ -197,13 +200,14 @@ impl Work<'_> {
 
     /// Searches all states for the signals that the solver has left open: first as sets, then one by one within the
     /// scans of this turn. Also tells whether every state has inputs that satisfy the assumptions.
-    fn visit(&self, signals: &[Signal], found: &mut [Found]) -> Option<Ends> {
+    fn visit(&self, signals: &[Signal], needs: &Needs, found: &mut [Found]) -> Option<Ends> {
         let ways: [Visit<'_>; 2] = [Self::sets, Self::states];
         let mut known = None;
         for way in ways {
-            let is_open = |f: &Found| matches!(f, Found::Open(_));
-            let open: Vec<usize> =
-                (0..signals.len()).filter(|i| found.get(*i).is_some_and(is_open)).collect();
+            let is_shown = |i: usize| matches!(found.get(i), Some(Found::Reached(_)));
+            let is_open =
+                |i: &usize| matches!(found.get(*i), Some(Found::Open(_))) && needs.is_needed(*i, is_shown);
+            let open: Vec<usize> = (0..signals.len()).filter(is_open).collect();
             if open.is_empty() || self.effort.turns < FEWEST || (self.budget.stop)() {
                 break;
             }

@@ -36,6 +36,7 @@ pub mod graph;
 mod joined;
 mod kept;
 mod layer;
+mod needs;
 mod pdr;
 mod relate;
 pub mod simulate;
@@ -57,6 +58,8 @@ pub(crate) use joined::{join, mapped};
 #[cfg(test)]
 pub(crate) use kept::kept;
 pub use layer::Satisfiability;
+#[cfg(test)]
+pub(crate) use needs::Needs;
 pub use simulate::{Trace, Values, evaluate, shows};
 pub use wide::Tries;
 pub(crate) use wide::{Wanted, wide};

@@ -244,7 +244,13 @@ mod tests {
                 t.candidates.len()
             );
             assert!(kept.len() > 20, "{profile}");
-            let found = crate::sat::decide_with(&t.system, &[bad], &t.candidates, &effort);
+            let found = crate::sat::decide_with(
+                &t.system,
+                &[bad],
+                &crate::sat::Needs::default(),
+                &t.candidates,
+                &effort,
+            );
             match found.first() {
                 Some(Found::Never(Proof::Invariant(clauses))) => {
                     assert!(safe && clauses.len() <= t.candidates.len(), "{profile}: {clauses:?}");
@@ -280,7 +286,8 @@ mod tests {
         let t = system(&model, &[question], Observed::Asked);
         let bad = t.asked[0].as_ref().expect("it is asked").bad;
         let effort = Effort { bytes: 1 << 28, turns: 8, stop: &|| false };
-        let found = crate::sat::decide_with(&t.system, &[bad], &t.candidates, &effort);
+        let found =
+            crate::sat::decide_with(&t.system, &[bad], &crate::sat::Needs::default(), &t.candidates, &effort);
         assert!(matches!(found[..], [Found::Never(_)]), "{found:?}");
     }
 }
