@@ -38,6 +38,8 @@ struct Moved<'a> {
     graph: &'a Graph,
     at: Vec<Point>,
     extents: Vec<Extent>,
+    /// Texts of the transitions round their bars, not rounded.
+    texts: &'a [Extent],
     moved: Vec<bool>,
     /// Height of the line or double line below and above each node.
     below: Vec<i32>,
@@ -63,7 +65,8 @@ pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Opti
     }
     let moved = given.iter().map(|g| by_hand || g.is_some()).collect();
     let extents = extents(graph, sizes);
-    let mut m = Moved { graph, at, extents, moved, below: Vec::new(), above: Vec::new() };
+    let texts = &sizes.transitions;
+    let mut m = Moved { graph, at, extents, texts, moved, below: Vec::new(), above: Vec::new() };
     m.lines();
     m.place(auto, sizes)
 }
@@ -131,6 +134,14 @@ impl Moved<'_> {
     /// runs past them.
     fn parting(&self, n: u32, port: i32, room: i32) -> i32 {
         let usual = port + LINK.min(room / 2);
+        // Above the texts of the transitions behind it, if it can.
+        let over = self.graph.out.of(n).iter().map(|l| {
+            let to = self.graph.links[*l as usize].1 as usize;
+            let text = to.checked_sub(self.graph.steps).and_then(|t| self.texts.get(t));
+            self.at[to].y - text.map_or(0, |e| e.up.clamp(0, 2 * SQUARE))
+        });
+        let over = over.filter(|top| *top > port).min().unwrap_or(usual);
+        let usual = if usual > over { port + (over - port) / 2 } else { usual };
         let low = self.at[n as usize].y + self.extents[n as usize].down + CLEAR;
         let x = self.at[n as usize].x;
         let (mut top, mut to_right) = (i32::MAX, false);
@@ -160,24 +171,54 @@ impl Moved<'_> {
         let still = |b: &Bar| !side(b)[graph.steps + b.transition as usize];
         p.bars = auto.bars.into_iter().filter(still).collect();
         self.bars(&mut p, &below, &above);
-        let boxes = self.at.iter().zip(&self.extents).map(|(at, e)| Rect::around(*at, *e));
+        // Drawings of other tools are close: symbols have their own height here, without what the grid adds.
+        let room = |(n, e): (usize, &Extent)| match n.checked_sub(graph.steps) {
+            None => {
+                Extent { down: sizes.steps.get(n).map_or(e.down, |s| s.down.clamp(SQUARE, e.down)), ..*e }
+            }
+            Some(t) => match sizes.transitions.get(t) {
+                Some(text) => Extent { up: text.up.clamp(0, e.up), down: text.down.clamp(0, e.down), ..*e },
+                None => *e,
+            },
+        };
+        let rooms = self.extents.iter().enumerate().map(room);
+        let boxes = self.at.iter().zip(rooms).map(|(at, e)| Rect::around(*at, e));
         let double = |b: &Bar| {
             let r = Rect { x: b.at.x, y: b.at.y, w: b.w, h: DOUBLE };
             (graph.steps as u32 + b.transition, r)
         };
-        let ways = Ways::new((0..).zip(boxes).chain(p.bars.iter().map(double)).collect());
+        let mut ways = Ways::new((0..).zip(boxes).chain(p.bars.iter().map(double)).collect());
         let mut drawn: HashMap<(End, End), Link> =
             auto.links.into_iter().map(|l| ((l.from, l.to), l)).collect();
         let broken = |from: End, to: End| auto.connectors.iter().any(|c| (c.from, c.to) == (from, to));
-        for &(from, to) in &graph.links {
-            let again = below[from as usize] || above[to as usize];
+        let mut links: Vec<Option<Link>> = vec![None; graph.links.len()];
+        let mut again = Vec::new();
+        for (n, &(from, to)) in graph.links.iter().enumerate() {
+            let touched = below[from as usize] || above[to as usize];
             let (a, b) = (end(graph.steps, from), end(graph.steps, to));
             match drawn.remove(&(a, b)) {
-                Some(link) if !again && !ways.blocked(&link.points, from, to) => p.links.push(link),
-                None if !again && broken(a, b) => {}
-                _ => p.links.push(self.link(&ways, from, to)),
+                Some(link) if !touched && !ways.blocked(&link.points, from, to) => {
+                    ways.draw(&link.points, from, to);
+                    links[n] = Some(link);
+                }
+                None if !touched && broken(a, b) => {}
+                _ => again.push(n),
             }
         }
+        // Links that can go in one way only come first, so that the others move aside.
+        let (x, y) = (|n: u32| self.at[n as usize].x, |n: u32| self.at[n as usize].y);
+        let aside = |n: &usize| {
+            let (from, to) = graph.links[*n];
+            (y(to) <= y(from), (x(to) - x(from)).abs())
+        };
+        again.sort_by_key(aside);
+        for n in again {
+            let (from, to) = graph.links[n];
+            let link = self.link(&ways, from, to);
+            ways.draw(&link.points, from, to);
+            links[n] = Some(link);
+        }
+        p.links = links.into_iter().flatten().collect();
         let keep = |c: &crate::Connector| !p.links.iter().any(|l| (l.from, l.to) == (c.from, c.to));
         p.connectors = auto.connectors.into_iter().filter(keep).collect();
         p.area = area(&p, &extents(graph, sizes));

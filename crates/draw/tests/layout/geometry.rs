@@ -13,12 +13,43 @@ pub(crate) fn link_faults(chart: &Chart, p: &Placement) -> Vec<String> {
     found
 }
 
-/// The links that cross a symbol.
+/// The links that cross a symbol. Beside a step's square its actions may be higher than the square: below the square
+/// is no symbol then.
 pub(crate) fn runs_through(sizes: &Sizes, p: &Placement) -> Vec<String> {
     let mut found = Vec::new();
-    let symbols: Vec<(Solid, Rect)> =
-        solids(sizes, p).into_iter().filter(|(s, _)| matches!(s, Solid::Symbol(_))).collect();
+    let mut symbols = Vec::new();
+    for (solid, whole) in solids(sizes, p) {
+        match solid {
+            Solid::Symbol(End::Step(n)) => {
+                let middle = p.steps[n as usize].x;
+                let square = Rect { w: middle + 250 - whole.x, h: whole.h.min(500), ..whole };
+                symbols.push((solid, square));
+                symbols.push((solid, Rect { x: middle + 250, w: whole.x + whole.w - middle - 250, ..whole }));
+            }
+            Solid::Symbol(End::Transition(_)) => symbols.push((solid, whole)),
+            Solid::Bar(_) | Solid::Connector(..) => {}
+        }
+    }
     crossings(p, &symbols, &mut found);
+    found
+}
+
+/// The pairs of links with no end in common of which a piece lies on the other: nobody could tell them apart.
+pub(crate) fn shared(p: &Placement) -> Vec<String> {
+    let mut found = Vec::new();
+    for (k, a) in p.links.iter().enumerate() {
+        for b in p.links.iter().skip(k + 1).filter(|b| a.from != b.from && a.to != b.to) {
+            let lies = |v: &[Point], w: &[Point]| {
+                let along = |a: Point, b: Point| (a.x.min(b.x), a.x.max(b.x), a.y.min(b.y), a.y.max(b.y));
+                let (v, w) = (along(v[0], v[1]), along(w[0], w[1]));
+                let upright = v.0 == v.1 && w.0 == w.1 && v.0 == w.0 && v.2.max(w.2) < v.3.min(w.3);
+                upright || v.2 == v.3 && w.2 == w.3 && v.2 == w.2 && v.0.max(w.0) < v.1.min(w.1)
+            };
+            if a.points.windows(2).any(|v| b.points.windows(2).any(|w| lies(v, w))) {
+                found.push(format!("{:?} -> {:?} and {:?} -> {:?} share a line", a.from, a.to, b.from, b.to));
+            }
+        }
+    }
     found
 }
 

@@ -4,6 +4,7 @@
 mod charts;
 mod conventions;
 mod geometry;
+mod imported;
 mod maker;
 mod placed;
 mod random;
