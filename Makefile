@@ -98,7 +98,7 @@ $(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, mosquitto, pyarrow, lxml, awlsim, blark, l5x, a bare target, the model checkers ABC, Spin and rIC3
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, a bare target, the model checkers ABC, Spin and rIC3
 peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
@@ -108,6 +108,11 @@ peers: checkers
 	@$(call debian,cyclictest,rt-tests)
 	@$(call debian,stress-ng,stress-ng)
 	@$(call debian,cppcheck,cppcheck)
+	@$(call debian,clang-tidy,clang-tidy)
+	@$(call debian,avr-gcc,gcc-avr avr-libc)
+	@test -d /usr/share/arduino/hardware/arduino/avr || { $(SUDO) apt-get update -qq && \
+		$(SUDO) apt-get install -qq --no-install-recommends arduino-core-avr; }
+	@$(call debian,cmake,cmake)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev

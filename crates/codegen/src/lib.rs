@@ -21,14 +21,18 @@ mod arduino;
 mod body;
 mod build;
 mod c;
+mod c_types;
 mod c_words;
 mod chart;
 mod facts;
+mod files;
+mod fixed;
 mod flat;
 mod frame;
 mod lets;
 mod names;
 mod operations;
+mod output;
 mod pack;
 mod places;
 pub mod plc;
@@ -50,10 +54,9 @@ use g7_engine::{Addr, StepId};
 use g7_model::{Problem, Severity, Span, codes};
 
 use build::Gen;
+pub use output::{File, Parts};
 pub use room::{Clock, Room};
-use runtime::Helpers;
 pub use size::{BOARDS, Board, Sizes};
-use tree::Module;
 
 /// A language that is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,15 +106,6 @@ pub struct Options<'a> {
     pub source: &'a str,
 }
 
-/// A file that was printed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct File {
-    /// Its name, without a folder.
-    pub name: String,
-    /// Its content.
-    pub text: String,
-}
-
 /// The printed files and their report.
 #[derive(Clone, Debug)]
 pub struct Printed {
@@ -156,12 +150,21 @@ impl Places {
     }
 }
 
-/// Prints the code of a chart.
+/// Prints the code of a chart, C as a header and a source file that need no other.
 ///
 /// # Errors
 ///
 /// The constructs that the language cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<Problem>> {
+    print_as(compiled, options, Parts::Whole)
+}
+
+/// Prints the code of a chart in these files.
+///
+/// # Errors
+///
+/// The constructs that the language cannot say, with their places in the chart.
+pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Result<Printed, Vec<Problem>> {
     let mut g = Gen::new(compiled, options.source, options.room);
     if options.style == Style::Flat && options.room != Room::default() {
         let text = "code for little memory is in the structured style alone";
@@ -207,9 +210,11 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
     };
     let name = names::letters(options.name).to_lowercase();
     let files = match options.language {
-        Language::C => c_files(&module, &helpers, &name, options.room),
+        Language::C => files::c(&module, &helpers, &name, options.room, parts),
         Language::Arduino => {
-            let mut files = c_files(&module, &helpers, &name, options.room);
+            // A sketch and C are two languages: one file cannot hold both.
+            let parts = if parts == Parts::One { Parts::Whole } else { parts };
+            let mut files = files::c(&module, &helpers, &name, options.room, parts);
             files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name, options.room) });
             files
         }
@@ -260,23 +265,4 @@ fn places(g: &Gen<'_>) -> Places {
         places.variables.insert(v.addr.0, path);
     }
     places
-}
-
-fn c_files(module: &Module, helpers: &Helpers, name: &str, room: Room) -> Vec<File> {
-    let guard = format!("{}_H", name.to_uppercase());
-    let mut header = format!(
-        "/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n"
-    );
-    if room.is_narrow() {
-        header += &format!("/* {} */\n", room.note());
-    }
-    header += &format!("#ifndef {guard}\n#define {guard}\n\n#include <stdbool.h>\n#include <stdint.h>\n\n");
-    header += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
-    header += &c::Printer::new(module, name).header();
-    header += "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
-    let includes = if helpers.math { "#include <math.h>\n" } else { "" };
-    let helpers = helpers.text.replace("FAULT_", &format!("{}_FAULT_", name.to_uppercase()));
-    let body = c::Printer::new(module, name).body(&helpers);
-    let text = format!("/* The chart {name}, printed by G7. */\n#include \"{name}.h\"\n{includes}\n{body}");
-    vec![File { name: format!("{name}.h"), text: header }, File { name: format!("{name}.c"), text }]
 }

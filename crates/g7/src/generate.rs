@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use g7_codegen::{BOARDS, Board, Clock, File, Language, Options, Room, Sizes, Style, plc};
+use g7_codegen::{BOARDS, Board, Clock, File, Language, Options, Parts, Room, Sizes, Style, plc};
 use g7_model::{Problem, ProfileName, Severity};
 
 use crate::failure::{Failure, Verdict};
@@ -15,8 +15,9 @@ use crate::{files, sources, style, values};
 
 const EXAMPLES: &str = "\
 Examples:
-  g7 gen c tank -o out            out/tank.h and out/tank.c
-  g7 gen c tank                   to the standard output, one file behind the other
+  g7 gen c tank -o out            out/tank.h, out/tank.c and out/tank_run.h, with out/g7.h and out/g7.c
+  g7 gen c tank --whole -o out    out/tank.h and out/tank.c, which need no g7.h and g7.c
+  g7 gen c tank                   to the standard output, as one file that compiles as it is
   g7 gen c tank --style flat      Boolean equations with memories
   g7 gen c tank --small --time-unit ms
                                   for little memory; the clock in milliseconds
@@ -51,7 +52,7 @@ pub(crate) struct Gen {
 /// The languages.
 #[derive(Debug, Subcommand)]
 enum Words {
-    /// C99 without heap and library: a header and a source file.
+    /// C99 without heap and library: the chart, and `g7.h` and `g7.c` for all charts.
     #[command(after_help = EXAMPLES)]
     C(Code),
     /// The same C99 code and an Arduino sketch.
@@ -114,6 +115,9 @@ struct Code {
     /// The board that the code is for; nothing is written where its RAM is too small.
     #[arg(long, value_parser = board)]
     board: Option<Board>,
+    /// Put what all charts have in common into the chart's own file, instead of `g7.h` and `g7.c`.
+    #[arg(long, requires = "output")]
+    whole: bool,
     #[command(flatten)]
     what: What,
 }
@@ -162,7 +166,15 @@ impl Code {
             let why = "--small and --time-unit are for the structured style";
             return Err(Failure::Usage(why.to_owned()));
         }
-        controller(Tongue::Code(language, style, room, self.board), &self.what)
+        if self.whole && matches!(language, Language::Rust) {
+            return Err(Failure::Usage("--whole is for C: a Rust module is one file anyway".to_owned()));
+        }
+        let parts = match self.what.output {
+            None => Parts::One,
+            Some(_) if self.whole => Parts::Whole,
+            Some(_) => Parts::Apart,
+        };
+        controller(Tongue::Code(language, style, room, parts, self.board), &self.what)
     }
 }
 
@@ -241,7 +253,7 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
 /// The language of the output. PLC code has a form and a file extension too; `ascii` keeps its comments in ASCII.
 #[derive(Clone, Copy)]
 enum Tongue {
-    Code(Language, Style, Room, Option<Board>),
+    Code(Language, Style, Room, Parts, Option<Board>),
     Plc { form: plc::Form, ending: &'static str, ascii: bool },
 }
 
@@ -253,9 +265,9 @@ impl Tongue {
         source: &str,
     ) -> Result<Written, Vec<Problem>> {
         match self {
-            Tongue::Code(language, style, room, board) => {
+            Tongue::Code(language, style, room, parts, board) => {
                 let options = Options { language, style, room, name, source };
-                let p = g7_codegen::print(compiled, &options)?;
+                let p = g7_codegen::print_as(compiled, &options, parts)?;
                 let sizes = (language != Language::Rust).then_some((p.sizes, room, board));
                 Ok(Written { files: p.files, problems: p.problems, sizes })
             }
@@ -366,14 +378,20 @@ fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
         out.flush()?;
         return Ok(());
     };
-    let paths: Vec<PathBuf> = printed.iter().map(|f| folder.join(&f.name)).collect();
-    if let Some(there) = paths.iter().find(|p| p.exists() && !what.force) {
+    // Several charts in one folder share `g7.h` and `g7.c`: what is there as it would be written stays.
+    let is_same = |file: &File, path: &Path| std::fs::read(path).is_ok_and(|old| old == file.text.as_bytes());
+    let paths = printed.iter().map(|f| (f, folder.join(&f.name)));
+    let new: Vec<(&File, PathBuf)> = paths.filter(|(f, p)| !is_same(f, p)).collect();
+    if let Some((_, there)) = new.iter().find(|(_, p)| p.exists() && !what.force) {
         return Err(Failure::Usage(format!("{} already exists; --force replaces it", there.display())));
     }
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.clone(), e))?;
-    for (file, path) in printed.iter().zip(&paths) {
+    for (file, path) in &new {
         files::write(path, file.text.as_bytes())?;
         talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+    }
+    if new.is_empty() {
+        talk!("{}: everything is there already, as it would be written", folder.display());
     }
     Ok(())
 }
