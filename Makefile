@@ -16,6 +16,7 @@ debian = command -v $(1) >/dev/null || \
 # Logs of `make test` with the list of what was skipped; the pages of the book, put together.
 BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
 PROVE := $(abspath $(or $(CARGO_TARGET_DIR),target))/prove-bench
+CORTEX := $(abspath $(or $(CARGO_TARGET_DIR),target))/cortex-m
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 # The program as the tests have it: libraries get the features that the workspace asks for as a whole, so that
 # they are compiled once for all tests.
@@ -113,6 +114,8 @@ peers: checkers
 	@test -d /usr/share/arduino/hardware/arduino/avr || { $(SUDO) apt-get update -qq && \
 		$(SUDO) apt-get install -qq --no-install-recommends arduino-core-avr; }
 	@$(call debian,cmake,cmake)
+	@cargo run --quiet --package g7 -- gen rust examples/bottle-conveyor --project cargo --force -o $(CORTEX) && \
+		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev

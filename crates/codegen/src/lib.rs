@@ -36,6 +36,7 @@ mod output;
 mod pack;
 mod places;
 pub mod plc;
+mod project;
 mod prune;
 mod roll;
 mod room;
@@ -55,6 +56,7 @@ use g7_model::{Problem, Severity, Span, codes};
 
 use build::Gen;
 pub use output::{File, Parts};
+pub use project::{Project, is_own, with_project};
 pub use room::{Clock, Room};
 pub use size::{BOARDS, Board, Sizes};
 
@@ -150,6 +152,11 @@ impl Places {
     }
 }
 
+/// The name that files begin with, and public names of C.
+pub fn file_name(name: &str) -> String {
+    names::letters(name).to_lowercase()
+}
+
 /// Prints the code of a chart, C as a header and a source file that need no other.
 ///
 /// # Errors
@@ -208,13 +215,21 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
             return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
         }
     };
-    let name = names::letters(options.name).to_lowercase();
+    let name = file_name(options.name);
+    if parts == Parts::Apart && ["g7", "g7_math"].contains(&name.as_str()) {
+        let text =
+            format!("a chart called `{name}` would have the files of all charts; give its code another name");
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+    }
     let files = match options.language {
         Language::C => files::c(&module, &helpers, &name, options.room, parts),
         Language::Arduino => {
             // A sketch and C are two languages: one file cannot hold both.
             let parts = if parts == Parts::One { Parts::Whole } else { parts };
             let mut files = files::c(&module, &helpers, &name, options.room, parts);
+            if parts == Parts::Apart {
+                files.insert(0, project::platformio(&name));
+            }
             files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name, options.room) });
             files
         }

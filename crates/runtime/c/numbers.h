@@ -88,13 +88,13 @@ static double toward_zero(double v)
     return (double)(int64_t)v;
 }
 
-/* What a division leaves, exact, with the sign of the dividend. */
+/* What a division leaves, exact, with the sign of the dividend. Without a finite dividend there is none. */
 static double remainder_of(double a, double b)
 {
     double rest = (a < 0.0) ? -a : a;
     const double divisor = (b < 0.0) ? -b : b;
     double part = divisor;
-    if (!(rest <= 1.7976931348623157e308) || (divisor != divisor)) {
+    if (((rest - rest) != 0.0) || (divisor != divisor)) {
         return (a - a) / (b - b);
     }
     if (rest < divisor) {
@@ -125,7 +125,7 @@ static double real_sqrt(double v)
     uint64_t number;
     uint64_t root = 0;
     uint64_t rest = 0;
-    if ((v != v) || (v == 0.0) || (v > 1.7976931348623157e308)) {
+    if ((v != v) || (v == 0.0) || ((v > 0.0) && ((v - v) != 0.0))) {
         return v;
     }
     if (v < 0.0) {
