@@ -16,6 +16,7 @@ debian = command -v $(1) >/dev/null || \
 # Logs of `make test` with the list of what was skipped; the pages of the book, put together.
 BOOK := $(abspath $(or $(CARGO_TARGET_DIR),target))/book
 PROVE := $(abspath $(or $(CARGO_TARGET_DIR),target))/prove-bench
+CORTEX := $(abspath $(or $(CARGO_TARGET_DIR),target))/cortex-m
 TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 # The program as the tests have it: libraries get the features that the workspace asks for as a whole, so that
 # they are compiled once for all tests.
@@ -98,7 +99,7 @@ $(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, mosquitto, pyarrow, lxml, awlsim, blark, l5x, a bare target, the model checkers ABC, Spin and rIC3
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, a bare target, the model checkers ABC, Spin and rIC3
 peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
@@ -108,6 +109,13 @@ peers: checkers
 	@$(call debian,cyclictest,rt-tests)
 	@$(call debian,stress-ng,stress-ng)
 	@$(call debian,cppcheck,cppcheck)
+	@$(call debian,clang-tidy,clang-tidy)
+	@$(call debian,avr-gcc,gcc-avr avr-libc)
+	@test -d /usr/share/arduino/hardware/arduino/avr || { $(SUDO) apt-get update -qq && \
+		$(SUDO) apt-get install -qq --no-install-recommends arduino-core-avr; }
+	@$(call debian,cmake,cmake)
+	@cargo run --quiet --package g7 -- gen rust examples/bottle-conveyor --project cargo --force -o $(CORTEX) && \
+		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev

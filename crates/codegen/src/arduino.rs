@@ -7,7 +7,7 @@ use g7_compile::symbols::Variable;
 use g7_model::Type;
 
 use crate::build::Gen;
-use crate::c::comment;
+use crate::c_words::comment;
 use crate::room::{Clock, Room};
 
 /// The use of a pin.

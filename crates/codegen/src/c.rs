@@ -1,46 +1,35 @@
 //! The tree as C99.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::fmt::Write as _;
 
-use crate::c_words::{FLASH, in_flash, integer, own_name, real};
+use crate::c_types::Types;
+use crate::c_words::{comment, in_flash, integer, own_name, real, snake};
 use crate::tree::{Arm, Bin, Block, Const, Expr, Field, Function, Known, Module, Stmt, Struct, Ty, Un};
+
+/// In front of the names of `g7.h`.
+pub(crate) const SHARED: &str = "g7";
+
+/// The name of the faults among the named numbers.
+pub(crate) const FAULT: &str = "Fault";
 
 /// The printer of a module, with the meaning of every name.
 pub(crate) struct Printer<'a> {
     module: &'a Module,
     /// In front of public names.
     prefix: &'a str,
-    structs: HashMap<&'a str, &'a Struct>,
+    types: Types<'a>,
     /// Constants that carry the prefix.
     public: HashSet<&'a str>,
     /// Names of numbers.
     numbered: HashSet<&'a str>,
     /// Functions that carry the prefix.
     offered: HashSet<&'a str>,
-    functions: HashMap<&'a str, &'a Function>,
+    /// Functions and structures that stand in `g7.h`: their names begin with `g7_`.
+    shared: HashSet<&'a str>,
     /// Tables that are read element by element alone: they need no place in RAM.
     in_flash: HashSet<&'a str>,
-    /// Types of the names in the function at hand.
-    scope: HashMap<String, Ty>,
     out: String,
-}
-
-/// `StepTimes` as `step_times`.
-fn snake(name: &str) -> String {
-    let mut out = String::new();
-    for (i, c) in name.chars().enumerate() {
-        if c.is_uppercase() && i > 0 {
-            out.push('_');
-        }
-        out.extend(c.to_lowercase());
-    }
-    out
-}
-
-/// Text that may stand in a comment.
-pub(crate) fn comment(text: &str) -> String {
-    text.replace("*/", "* /").replace("/*", "/ *").replace('\\', "\\ ")
 }
 
 impl<'a> Printer<'a> {
@@ -51,59 +40,115 @@ impl<'a> Printer<'a> {
         Printer {
             module,
             prefix,
-            structs: module.structs.iter().map(|s| (s.name.as_str(), s)).collect(),
+            types: Types::new(module),
             public: rows.chain(consts).collect(),
             numbered: module.numbers.iter().flat_map(|n| n.rows.iter().map(|r| r.0.as_str())).collect(),
             offered: module.functions.iter().filter(|f| f.public).map(|f| f.name.as_str()).collect(),
-            functions: module.functions.iter().map(|f| (f.name.as_str(), f)).collect(),
+            shared: HashSet::new(),
             in_flash: in_flash(module),
-            scope: HashMap::new(),
             out: String::new(),
         }
     }
 
-    /// The declarations for other files.
-    pub(crate) fn header(mut self) -> String {
-        for numbers in self.module.numbers.iter().filter(|n| n.public) {
-            self.note(&numbers.note, "");
-            self.numbers(&numbers.rows, &format!("{}_{}", self.prefix, snake(&numbers.name)));
+    /// The same where these functions and structures stand in `g7.h`.
+    pub(crate) fn apart(module: &'a Module, prefix: &'a str, shared: HashSet<&'a str>) -> Printer<'a> {
+        Printer { shared, ..Printer::new(module, prefix) }
+    }
+
+    /// The text since the last time, with one line break at its end.
+    pub(crate) fn taken(&mut self) -> String {
+        while self.out.ends_with("\n\n") {
+            self.out.pop();
         }
-        for s in &self.module.structs {
-            self.structure(s);
-        }
+        std::mem::take(&mut self.out)
+    }
+
+    /// The named numbers, structures and functions for other files.
+    pub(crate) fn declarations(&mut self) {
+        self.kinds();
         for f in self.module.functions.iter().filter(|f| f.public) {
             self.note(&f.note, "");
             let head = self.head(f);
             let _ = writeln!(self.out, "{head};\n");
         }
-        self.out
     }
 
-    /// The rest.
-    pub(crate) fn body(mut self, helpers: &str) -> String {
+    /// The named numbers and structures for other files.
+    pub(crate) fn kinds(&mut self) {
+        for numbers in self.module.numbers.iter().filter(|n| n.public) {
+            if numbers.name == FAULT {
+                if self.shared.is_empty() {
+                    self.faults(&numbers.note, &numbers.rows);
+                }
+                continue;
+            }
+            self.note(&numbers.note, "");
+            self.numbers(&numbers.rows, &format!("{}_{}", self.prefix, snake(&numbers.name)));
+        }
+        for s in &self.module.structs {
+            if !self.shared.contains(s.name.as_str()) {
+                self.structure(s);
+            }
+        }
+    }
+
+    /// The faults, which are the same in all charts: a program of several charts meets them several times.
+    fn faults(&mut self, note: &str, rows: &[(String, usize, String)]) {
+        self.out.push_str("#ifndef G7_FAULTS\n#define G7_FAULTS\n");
+        self.note(note, "");
+        self.numbers(rows, "g7_fault");
+        self.out.push_str("#endif\n\n");
+    }
+
+    /// Numbers and tables for this file alone.
+    pub(crate) fn tables(&mut self) {
         for numbers in self.module.numbers.iter().filter(|n| !n.public && !n.rows.is_empty()) {
             self.note(&numbers.note, "");
             self.numbers(&numbers.rows, "");
         }
-        if !self.in_flash.is_empty() {
-            self.out.push_str(FLASH);
-        }
         for c in &self.module.consts {
             self.constant(c);
         }
-        self.out.push_str(helpers);
+    }
+
+    /// True if tables stand in the flash of an AVR.
+    pub(crate) fn has_flash(&self) -> bool {
+        !self.in_flash.is_empty()
+    }
+
+    /// The heads of the functions for this file alone.
+    pub(crate) fn heads(&mut self) {
         for f in self.module.functions.iter().filter(|f| !f.public) {
-            let head = self.head(f);
-            let _ = writeln!(self.out, "static {head};");
+            if !self.is_shared(f) {
+                let head = self.head(f);
+                let _ = writeln!(self.out, "static {head};");
+            }
         }
         self.out.push('\n');
-        for f in &self.module.functions {
+    }
+
+    /// The functions of this kind.
+    pub(crate) fn functions(&mut self, is_wanted: impl Fn(&Function) -> bool) {
+        let module = self.module;
+        for f in &module.functions {
+            if !self.is_shared(f) && is_wanted(f) {
+                self.function(f);
+            }
+        }
+    }
+
+    fn is_shared(&self, f: &Function) -> bool {
+        !f.public && self.shared.contains(f.name.as_str())
+    }
+
+    /// The functions, each alone, with its name.
+    pub(crate) fn each_function(&mut self) -> Vec<(&'a str, String)> {
+        let module = self.module;
+        let text = |f: &'a Function| {
             self.function(f);
-        }
-        while self.out.ends_with("\n\n") {
-            self.out.pop();
-        }
-        self.out
+            (f.name.as_str(), self.taken())
+        };
+        module.functions.iter().map(text).collect()
     }
 
     fn note(&mut self, text: &str, indent: &str) {
@@ -135,7 +180,9 @@ impl<'a> Printer<'a> {
     }
 
     fn constant_name(&self, name: &str) -> String {
-        if self.public.contains(name) {
+        if name.starts_with("FAULT_") {
+            format!("G7_{name}")
+        } else if self.public.contains(name) {
             format!("{}_{name}", self.prefix.to_uppercase())
         } else {
             name.to_owned()
@@ -161,7 +208,8 @@ impl<'a> Printer<'a> {
     }
 
     fn type_name(&self, name: &str) -> String {
-        format!("{}_{}", self.prefix, snake(name))
+        let prefix = if self.shared.contains(name) { SHARED } else { self.prefix };
+        format!("{prefix}_{}", snake(name))
     }
 
     /// A type with the name that is declared by it.
@@ -260,7 +308,7 @@ impl<'a> Printer<'a> {
         let head = self.head(f);
         let open = if f.public { "" } else { "static " };
         let _ = writeln!(self.out, "{open}{head}\n{{");
-        self.scope = f.parameters.iter().cloned().collect();
+        self.types.scope = f.parameters.iter().cloned().collect();
         let mut used = HashSet::new();
         for s in &f.body {
             s.walk(&mut |e| {
@@ -287,7 +335,7 @@ impl<'a> Printer<'a> {
         match s {
             Stmt::Note(text) => self.note(text, &indent),
             Stmt::Let { mutable, name, ty, value } => {
-                self.scope.insert(name.clone(), ty.clone());
+                self.types.scope.insert(name.clone(), ty.clone());
                 let constant = if *mutable { "" } else { "const " };
                 let declared = self.declared(ty, name);
                 match (ty, value) {
@@ -321,7 +369,7 @@ impl<'a> Printer<'a> {
                 let _ = writeln!(self.out, "{indent}}}");
             }
             Stmt::For(name, from, to, body) => {
-                self.scope.insert(name.clone(), Ty::Size);
+                self.types.scope.insert(name.clone(), Ty::Size);
                 let counter = Expr::Cast(Box::new(Expr::name(name.as_str())), Ty::Size);
                 let (from, to) = (self.beside(from, &counter, Bin::Lt), self.beside(to, &counter, Bin::Lt));
                 let _ =
@@ -352,7 +400,7 @@ impl<'a> Printer<'a> {
     }
 
     fn assign(&mut self, op: Option<Bin>, to: &Expr, value: &Expr, indent: &str) {
-        let ty = self.type_of(to);
+        let ty = self.types.of(to);
         if let (None, Some(Ty::Array(_, n))) = (op, &ty) {
             let (to, value) = (self.expr(to), self.expr(value));
             let head = format!("for (uint32_t i = 0U; i < {n}U; i++)");
@@ -426,33 +474,6 @@ impl<'a> Printer<'a> {
         let _ = writeln!(self.out, "{indent}default: {{\n{indent}    break;\n{indent}}}\n{indent}}}");
     }
 
-    /// The type of a place, as far as the tree tells it.
-    fn type_of(&self, e: &Expr) -> Option<Ty> {
-        match e {
-            Expr::Name(n) => self.scope.get(n).cloned(),
-            Expr::Field(of, name) => {
-                let of = match self.type_of(of)? {
-                    Ty::Named(n) => n,
-                    Ty::Ref(_, inner) => match *inner {
-                        Ty::Named(n) => n,
-                        _ => return None,
-                    },
-                    _ => return None,
-                };
-                self.structs.get(of.as_str())?.fields.iter().find(|f| f.name == *name).map(|f| f.ty.clone())
-            }
-            Expr::Index(of, _) => match self.type_of(of)? {
-                Ty::Array(of, _) | Ty::Slice(_, of) => Some(*of),
-                _ => None,
-            },
-            Expr::Deref(of) => match self.type_of(of)? {
-                Ty::Ref(_, of) => Some(*of),
-                _ => None,
-            },
-            _ => None,
-        }
-    }
-
     fn within(&self, e: &Expr, outer: Bin) -> String {
         let text = self.expr(e);
         let bare = match e {
@@ -482,32 +503,13 @@ impl<'a> Printer<'a> {
         let shifts = matches!(op, Bin::Shl | Bin::Shr);
         match e {
             Expr::Int(n, None) if *n >= 0 && *n <= i128::from(u32::MAX) && !shifts => {
-                match self.type_of_value(other) {
+                match self.types.of_value(other) {
                     Some(Ty::Size | Ty::Int { signed: false, bits: 32 | 64 }) => format!("{n}U"),
                     Some(Ty::Int { signed: false, .. }) if keeps => format!("{n}U"),
                     _ => self.within(e, op),
                 }
             }
             _ => self.within(e, op),
-        }
-    }
-
-    /// The type of a value, as far as the tree tells it.
-    fn type_of_value(&self, e: &Expr) -> Option<Ty> {
-        match e {
-            Expr::Cast(_, ty) | Expr::Int(_, Some(ty)) => Some(ty.clone()),
-            Expr::Call(f, _) if f != "inv" => self.functions.get(f.as_str())?.result.clone(),
-            Expr::Bin(Bin::BitAnd | Bin::BitOr | Bin::BitXor, a, b) => {
-                self.type_of_value(a).or_else(|| self.type_of_value(b))
-            }
-            Expr::Bin(Bin::Add | Bin::Sub, a, b) => {
-                let wide = |ty: &Ty| matches!(ty, Ty::Size | Ty::Int { bits: 32 | 64, .. });
-                self.type_of_value(a).or_else(|| self.type_of_value(b)).filter(wide)
-            }
-            Expr::Bin(Bin::Shl | Bin::Shr, a, _) => {
-                self.type_of_value(a).filter(|ty| matches!(ty, Ty::Size | Ty::Int { bits: 32 | 64, .. }))
-            }
-            place => self.type_of(place),
         }
     }
 
@@ -526,13 +528,13 @@ impl<'a> Printer<'a> {
             Expr::Real(bits, 32) => real(
                 f64::from(f32::from_bits(*bits as u32)),
                 &format!("{:?}", f32::from_bits(*bits as u32)),
-                "f",
+                "F",
             ),
             Expr::Real(bits, _) => real(f64::from_bits(*bits), &format!("{:?}", f64::from_bits(*bits)), ""),
             Expr::Bool(b) => b.to_string(),
             Expr::Name(n) => self.constant_name(n),
             Expr::Field(of, name) => {
-                let pointer = matches!(self.type_of(of), Some(Ty::Ref(..)));
+                let pointer = matches!(self.types.of(of), Some(Ty::Ref(..)));
                 format!("{}{}{name}", self.expr(of), if pointer { "->" } else { "." })
             }
             Expr::Index(of, i) => format!("{}[{}]", self.expr(of), self.expr(i)),
@@ -544,7 +546,7 @@ impl<'a> Printer<'a> {
                 format!("{left} {} {right}", op.text())
             }
             Expr::Cast(e, ty) => format!("({}){}", self.ty(ty), self.tight(e)),
-            Expr::Ref(_, e) => match (&**e, self.type_of(e)) {
+            Expr::Ref(_, e) => match (&**e, self.types.of(e)) {
                 (_, Some(Ty::Array(..))) => self.expr(e),
                 (_, Some(Ty::Ref(..) | Ty::Slice(..))) => self.expr(e),
                 (Expr::Name(n), None) if self.module.consts.iter().any(|c| c.name == *n) => self.expr(e),
@@ -570,7 +572,7 @@ impl<'a> Printer<'a> {
         {
             return format!("~{}", self.tight(a));
         }
-        let types = self.functions.get(f).map(|f| f.parameters.as_slice()).unwrap_or(&[]);
+        let types = self.types.function(f).map(|f| f.parameters.as_slice()).unwrap_or(&[]);
         let mut all = Vec::new();
         for (i, a) in args.iter().enumerate() {
             all.push(match types.get(i) {
@@ -578,7 +580,13 @@ impl<'a> Printer<'a> {
                 None => self.expr(a),
             });
         }
-        let name = if self.offered.contains(f) { format!("{}_{f}", self.prefix) } else { own_name(f) };
+        let name = if self.shared.contains(f) {
+            format!("{SHARED}_{f}")
+        } else if self.offered.contains(f) {
+            format!("{}_{f}", self.prefix)
+        } else {
+            own_name(f)
+        };
         format!("{name}({})", all.join(", "))
     }
 }

@@ -1,9 +1,26 @@
-//! Numbers and names as C writes them; used by [`crate::c`] alone; and where tables
+//! Numbers and names as C writes them, used by [`crate::c`] and what puts its files together; and where tables
 //! stand.
 
 use std::collections::{HashMap, HashSet};
 
 use crate::tree::{Expr, Module, Ty};
+
+/// `StepTimes` as `step_times`.
+pub(crate) fn snake(name: &str) -> String {
+    let mut out = String::new();
+    for (i, c) in name.chars().enumerate() {
+        if c.is_uppercase() && i > 0 {
+            out.push('_');
+        }
+        out.extend(c.to_lowercase());
+    }
+    out
+}
+
+/// Text that may stand in a comment.
+pub(crate) fn comment(text: &str) -> String {
+    text.replace("*/", "* /").replace("/*", "/ *").replace('\\', "\\ ")
+}
 
 /// The name of a function of the file's own; one that C's library has is another (rule 21.2).
 pub(crate) fn own_name(name: &str) -> String {

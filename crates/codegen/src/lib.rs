@@ -21,17 +21,22 @@ mod arduino;
 mod body;
 mod build;
 mod c;
+mod c_types;
 mod c_words;
 mod chart;
 mod facts;
+mod files;
+mod fixed;
 mod flat;
 mod frame;
 mod lets;
 mod names;
 mod operations;
+mod output;
 mod pack;
 mod places;
 pub mod plc;
+mod project;
 mod prune;
 mod roll;
 mod room;
@@ -50,10 +55,10 @@ use g7_engine::{Addr, StepId};
 use g7_model::{Problem, Severity, Span, codes};
 
 use build::Gen;
+pub use output::{File, Parts};
+pub use project::{Project, is_own, with_project};
 pub use room::{Clock, Room};
-use runtime::Helpers;
 pub use size::{BOARDS, Board, Sizes};
-use tree::Module;
 
 /// A language that is printed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -103,15 +108,6 @@ pub struct Options<'a> {
     pub source: &'a str,
 }
 
-/// A file that was printed.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct File {
-    /// Its name, without a folder.
-    pub name: String,
-    /// Its content.
-    pub text: String,
-}
-
 /// The printed files and their report.
 #[derive(Clone, Debug)]
 pub struct Printed {
@@ -156,12 +152,26 @@ impl Places {
     }
 }
 
-/// Prints the code of a chart.
+/// The name that files begin with, and public names of C.
+pub fn file_name(name: &str) -> String {
+    names::letters(name).to_lowercase()
+}
+
+/// Prints the code of a chart, C as a header and a source file that need no other.
 ///
 /// # Errors
 ///
 /// The constructs that the language cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<Problem>> {
+    print_as(compiled, options, Parts::Whole)
+}
+
+/// Prints the code of a chart in these files.
+///
+/// # Errors
+///
+/// The constructs that the language cannot say, with their places in the chart.
+pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Result<Printed, Vec<Problem>> {
     let mut g = Gen::new(compiled, options.source, options.room);
     if options.style == Style::Flat && options.room != Room::default() {
         let text = "code for little memory is in the structured style alone";
@@ -205,11 +215,21 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
             return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
         }
     };
-    let name = names::letters(options.name).to_lowercase();
+    let name = file_name(options.name);
+    if parts == Parts::Apart && ["g7", "g7_math"].contains(&name.as_str()) {
+        let text =
+            format!("a chart called `{name}` would have the files of all charts; give its code another name");
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+    }
     let files = match options.language {
-        Language::C => c_files(&module, &helpers, &name, options.room),
+        Language::C => files::c(&module, &helpers, &name, options.room, parts),
         Language::Arduino => {
-            let mut files = c_files(&module, &helpers, &name, options.room);
+            // A sketch and C are two languages: one file cannot hold both.
+            let parts = if parts == Parts::One { Parts::Whole } else { parts };
+            let mut files = files::c(&module, &helpers, &name, options.room, parts);
+            if parts == Parts::Apart {
+                files.insert(0, project::platformio(&name));
+            }
             files.push(File { name: format!("{name}.ino"), text: arduino::sketch(&g, &name, options.room) });
             files
         }
@@ -260,23 +280,4 @@ fn places(g: &Gen<'_>) -> Places {
         places.variables.insert(v.addr.0, path);
     }
     places
-}
-
-fn c_files(module: &Module, helpers: &Helpers, name: &str, room: Room) -> Vec<File> {
-    let guard = format!("{}_H", name.to_uppercase());
-    let mut header = format!(
-        "/* The chart {name}, printed by G7. Call {name}_init once, then {name}_scan in each cycle. */\n"
-    );
-    if room.is_narrow() {
-        header += &format!("/* {} */\n", room.note());
-    }
-    header += &format!("#ifndef {guard}\n#define {guard}\n\n#include <stdbool.h>\n#include <stdint.h>\n\n");
-    header += "#ifdef __cplusplus\nextern \"C\" {\n#endif\n\n";
-    header += &c::Printer::new(module, name).header();
-    header += "#ifdef __cplusplus\n}\n#endif\n\n#endif\n";
-    let includes = if helpers.math { "#include <math.h>\n" } else { "" };
-    let helpers = helpers.text.replace("FAULT_", &format!("{}_FAULT_", name.to_uppercase()));
-    let body = c::Printer::new(module, name).body(&helpers);
-    let text = format!("/* The chart {name}, printed by G7. */\n#include \"{name}.h\"\n{includes}\n{body}");
-    vec![File { name: format!("{name}.h"), text: header }, File { name: format!("{name}.c"), text }]
 }

@@ -183,6 +183,11 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
         }
     }
     m.structs.retain(|s| used.contains(&s.name));
+    for f in &mut m.functions {
+        while matches!(f.body.last(), Some(Stmt::Return(None))) {
+            f.body.pop();
+        }
+    }
     order(m);
     helpers
 }

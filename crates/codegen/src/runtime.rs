@@ -7,7 +7,7 @@
 //!   function that is not there; what a chart calls by a name is looked up in [`helpers`],
 //!   which tells what it does not find.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 
 use crate::tree::{self, Bin, Expr, Stmt, Ty, Un};
 
@@ -92,10 +92,10 @@ pub(crate) struct Struct {
 /// A helper of printed code as it stands in its file.
 #[derive(Debug)]
 pub(crate) struct Helper {
-    name: &'static str,
-    text: &'static str,
+    pub(crate) name: &'static str,
+    pub(crate) text: &'static str,
     /// True if C has it from `<math.h>`.
-    math: bool,
+    pub(crate) math: bool,
     /// Places of those that it needs.
     needs: &'static [usize],
 }
@@ -144,6 +144,11 @@ pub(crate) fn helpers(all: &'static [Helper], called: &BTreeSet<String>) -> Resu
 /// The structures and functions of the runtime that a chart with these facts has.
 pub(crate) fn of(facts: &Facts) -> (Vec<tree::Struct>, Vec<tree::Function>) {
     (STRUCTS.iter().map(|s| s.with(facts)).collect(), FUNCTIONS.iter().map(|f| f.with(facts)).collect())
+}
+
+/// The names of the functions of the runtime, in both styles.
+pub(crate) fn names() -> HashSet<&'static str> {
+    FUNCTIONS.iter().chain(FLAT_FUNCTIONS).map(|f| f.name).collect()
 }
 
 /// Those of a chart that is printed as equations.

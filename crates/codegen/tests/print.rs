@@ -1,6 +1,5 @@
-//! Printed code: names and texts of the chart, refused constructs, rules of MISRA C:2012 as the addon of cppcheck
-//! finds them, and a sketch that compiles. That the code does what the engine does is tested in
-//! `tests/tests/codegen.rs`.
+//! Printed code: names and texts of the chart, refused constructs, and a sketch that compiles. What linters say is
+//! tested in `lint.rs`; that the code does what the engine does in `tests/tests/codegen.rs`.
 #![allow(clippy::disallowed_methods, reason = "the tests start a compiler")]
 
 use std::process::Command;
@@ -234,63 +233,4 @@ fn the_sketch_has_the_pins_and_compiles() {
         .expect("g++ starts");
     let _ = std::fs::remove_dir_all(&folder);
     assert!(out.status.success(), "{}", String::from_utf8_lossy(&out.stderr));
-}
-
-/// A chart with edges, inverted conditions, and actions of every qualifier.
-const EDGES: &str = "profile iec61131
-input a : BOOL
-input b : BOOL
-output p, q, r, s : BOOL
-chart G {
-  initial step 1
-  step 2 { N p D 2s q L 1s r }
-  step 3 { SD 3s q S s }
-  step 4 { R q DS 1s r }
-  step 5 { SL 2s r P s P0 p R s }
-  1 -> 2 when ↑a
-  2 -> 3 when ↓b
-  3 -> 4 when 2s/X3
-  4 -> 5 when a
-  5 -> 1 when not a
-}
-";
-
-/// Rules that are kept: numbers beside unsigned values, chains that end with `else`, names of the
-/// library.
-const KEPT: [&str; 3] = ["misra-c2012-10.4]", "misra-c2012-15.7]", "misra-c2012-21.2]"];
-
-/// Rules that are not kept, each explained in `docs/book/src/exchange/code.md`.
-const EXPLAINED: [&str; 4] =
-    ["misra-c2012-15.5]", "misra-c2012-2.4]", "misra-c2012-8.7]", "misra-c2012-8.9]"];
-
-#[test]
-fn rules_are_kept_as_cppcheck_finds_them() {
-    if !g7_peers::tool("cppcheck") {
-        return;
-    }
-    for style in [Style::Structured, Style::Flat] {
-        let printed = printed_as(EDGES, Language::C, style).expect("it can be printed");
-        let folder = std::env::temp_dir().join(format!("g7-misra-{}-{style:?}", std::process::id()));
-        std::fs::create_dir_all(&folder).expect("a folder");
-        for f in &printed.files {
-            std::fs::write(folder.join(&f.name), &f.text).expect("a file");
-        }
-        let out = Command::new("cppcheck")
-            .args(["--addon=misra", "--std=c99", "--quiet", "tank.c"])
-            .current_dir(&folder)
-            .output();
-        let _ = std::fs::remove_dir_all(&folder);
-        let text = String::from_utf8_lossy(&out.expect("cppcheck starts").stderr).into_owned();
-        // The addon has run: functions with several exits are found.
-        assert!(text.contains("misra-c2012-15.5]"), "{text}");
-        for rule in KEPT {
-            assert!(!text.contains(rule), "{style:?}: {rule}\n{text}");
-        }
-        let other = |l: &&str| l.contains("[misra-c2012-") && !EXPLAINED.iter().any(|rule| l.contains(rule));
-        assert_eq!(
-            text.lines().find(other),
-            None,
-            "{style:?}: every deviation is explained in the book\n{text}"
-        );
-    }
 }

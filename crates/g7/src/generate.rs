@@ -4,7 +4,10 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
-use g7_codegen::{BOARDS, Board, Clock, File, Language, Options, Room, Sizes, Style, plc};
+use g7_codegen::{
+    BOARDS, Board, Clock, File, Language, Options, Parts, Project, Room, Sizes, Style, file_name, is_own,
+    plc, with_project,
+};
 use g7_model::{Problem, ProfileName, Severity};
 
 use crate::failure::{Failure, Verdict};
@@ -15,13 +18,18 @@ use crate::{files, sources, style, values};
 
 const EXAMPLES: &str = "\
 Examples:
-  g7 gen c tank -o out            out/tank.h and out/tank.c
-  g7 gen c tank                   to the standard output, one file behind the other
+  g7 gen c tank -o out            out/tank.h, out/tank.c and out/tank_run.h, with out/g7.h and out/g7.c
+  g7 gen c tank --whole -o out    out/tank.h and out/tank.c, which need no g7.h and g7.c
+  g7 gen c tank                   to the standard output, as one file that compiles as it is
   g7 gen c tank --style flat      Boolean equations with memories
   g7 gen c tank --small --time-unit ms
                                   for little memory; the clock in milliseconds
-  g7 gen arduino tank -o tank     a sketch folder: tank.ino with the C code
+  g7 gen arduino tank -o tank     a sketch folder: tank.ino, the C code, platformio.ini
+  g7 gen c tank --project cmake -o out
+                                  the same with CMakeLists.txt and a program round it
   g7 gen rust tank -o src         src/tank.rs, a module without the standard library
+  g7 gen rust tank --project cargo -o tank
+                                  a crate with a program for an STM32
   g7 gen st tank                  Structured Text: a function block of equations
   g7 gen il tank --style dolog80  Instruction List: steps that are set and reset
   g7 gen ld tank -o out           Ladder as PLCopen XML: out/tank.xml
@@ -51,7 +59,7 @@ pub(crate) struct Gen {
 /// The languages.
 #[derive(Debug, Subcommand)]
 enum Words {
-    /// C99 without heap and library: a header and a source file.
+    /// C99 without heap and library: the chart, and `g7.h` and `g7.c` for all charts.
     #[command(after_help = EXAMPLES)]
     C(Code),
     /// The same C99 code and an Arduino sketch.
@@ -114,8 +122,23 @@ struct Code {
     /// The board that the code is for; nothing is written where its RAM is too small.
     #[arg(long, value_parser = board)]
     board: Option<Board>,
+    /// Put what all charts have in common into the chart's own file, instead of `g7.h` and `g7.c`.
+    #[arg(long, requires = "output")]
+    whole: bool,
+    /// Add a program that calls the chart and the files of a build tool; they are yours and never written over.
+    #[arg(long, value_enum, value_name = "TOOL", requires = "output", conflicts_with = "whole")]
+    project: Option<Tool>,
     #[command(flatten)]
     what: What,
+}
+
+/// Build tools.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+enum Tool {
+    /// For C: CMakeLists.txt and main.c, for the machine at hand.
+    Cmake,
+    /// For Rust: Cargo.toml and src/main.rs, for an STM32 (Cortex-M4).
+    Cargo,
 }
 
 /// A board by its name.
@@ -162,7 +185,25 @@ impl Code {
             let why = "--small and --time-unit are for the structured style";
             return Err(Failure::Usage(why.to_owned()));
         }
-        controller(Tongue::Code(language, style, room, self.board), &self.what)
+        if self.whole && matches!(language, Language::Rust) {
+            return Err(Failure::Usage("--whole is for C: a Rust module is one file anyway".to_owned()));
+        }
+        let project = match (self.project, language) {
+            (None, _) => None,
+            (Some(Tool::Cmake), Language::C) => Some(Project::Cmake),
+            (Some(Tool::Cargo), Language::Rust) => Some(Project::Cargo),
+            (Some(_), _) => {
+                let why = "--project cmake is for `gen c`, --project cargo for `gen rust`; a sketch has its platformio.ini";
+                return Err(Failure::Usage(why.to_owned()));
+            }
+        };
+        let parts = match self.what.output {
+            None => Parts::One,
+            Some(_) if self.whole => Parts::Whole,
+            Some(_) => Parts::Apart,
+        };
+        let form = Form { language, style, room, parts, project, board: self.board };
+        controller(Tongue::Code(form), &self.what)
     }
 }
 
@@ -238,10 +279,21 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
     }
 }
 
+/// How C or Rust is printed.
+#[derive(Clone, Copy)]
+struct Form {
+    language: Language,
+    style: Style,
+    room: Room,
+    parts: Parts,
+    project: Option<Project>,
+    board: Option<Board>,
+}
+
 /// The language of the output. PLC code has a form and a file extension too; `ascii` keeps its comments in ASCII.
 #[derive(Clone, Copy)]
 enum Tongue {
-    Code(Language, Style, Room, Option<Board>),
+    Code(Form),
     Plc { form: plc::Form, ending: &'static str, ascii: bool },
 }
 
@@ -253,11 +305,15 @@ impl Tongue {
         source: &str,
     ) -> Result<Written, Vec<Problem>> {
         match self {
-            Tongue::Code(language, style, room, board) => {
+            Tongue::Code(Form { language, style, room, parts, project, board }) => {
                 let options = Options { language, style, room, name, source };
-                let p = g7_codegen::print(compiled, &options)?;
+                let p = g7_codegen::print_as(compiled, &options, parts)?;
                 let sizes = (language != Language::Rust).then_some((p.sizes, room, board));
-                Ok(Written { files: p.files, problems: p.problems, sizes })
+                let files = match project {
+                    Some(project) => with_project(p.files, project, &file_name(name), room),
+                    None => p.files,
+                };
+                Ok(Written { files, problems: p.problems, sizes })
             }
             Tongue::Plc { form, ending, ascii } => {
                 let printed = plc::print(compiled, form, name, source)?;
@@ -366,14 +422,25 @@ fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
         out.flush()?;
         return Ok(());
     };
-    let paths: Vec<PathBuf> = printed.iter().map(|f| folder.join(&f.name)).collect();
-    if let Some(there) = paths.iter().find(|p| p.exists() && !what.force) {
+    // Several charts in one folder share `g7.h` and `g7.c`: what is there as it would be written stays.
+    let is_same = |file: &File, path: &Path| std::fs::read(path).is_ok_and(|old| old == file.text.as_bytes());
+    let paths = printed.iter().map(|f| (f, folder.join(&f.name)));
+    // The program round a chart is the user's, once it is there.
+    let is_kept = |file: &File, path: &Path| is_same(file, path) || (is_own(&file.name) && path.exists());
+    let new: Vec<(&File, PathBuf)> = paths.filter(|(f, p)| !is_kept(f, p)).collect();
+    if let Some((_, there)) = new.iter().find(|(_, p)| p.exists() && !what.force) {
         return Err(Failure::Usage(format!("{} already exists; --force replaces it", there.display())));
     }
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.clone(), e))?;
-    for (file, path) in printed.iter().zip(&paths) {
+    for (file, path) in &new {
+        if let Some(folder) = path.parent() {
+            std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_owned(), e))?;
+        }
         files::write(path, file.text.as_bytes())?;
         talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+    }
+    if new.is_empty() {
+        talk!("{}: everything is there already, as it would be written", folder.display());
     }
     Ok(())
 }

@@ -74,6 +74,8 @@ static double round_even(double v)
         whole += 1.0;
     } else if ((rest < -0.5) || ((rest == -0.5) && (((int64_t)v % 2) != 0))) {
         whole -= 1.0;
+    } else {
+        /* it is the nearest */
     }
     return whole;
 }
@@ -86,13 +88,13 @@ static double toward_zero(double v)
     return (double)(int64_t)v;
 }
 
-/* What a division leaves, exact, with the sign of the dividend. */
+/* What a division leaves, exact, with the sign of the dividend. Without a finite dividend there is none. */
 static double remainder_of(double a, double b)
 {
     double rest = (a < 0.0) ? -a : a;
     const double divisor = (b < 0.0) ? -b : b;
     double part = divisor;
-    if (!(rest <= 1.7976931348623157e308) || (divisor != divisor)) {
+    if (((rest - rest) != 0.0) || (divisor != divisor)) {
         return (a - a) / (b - b);
     }
     if (rest < divisor) {
@@ -119,53 +121,59 @@ static double real_abs(double v)
 static double real_sqrt(double v)
 {
     double scale = 1.0;
+    double part = v;
     uint64_t number;
     uint64_t root = 0;
     uint64_t rest = 0;
-    if ((v != v) || (v == 0.0) || (v > 1.7976931348623157e308)) {
+    if ((v != v) || (v == 0.0) || ((v > 0.0) && ((v - v) != 0.0))) {
         return v;
     }
     if (v < 0.0) {
         return (v - v) / (v - v);
     }
-    while (v >= 4.0) {
-        v /= 4.0;
+    while (part >= 4.0) {
+        part /= 4.0;
         scale *= 2.0;
     }
-    while (v < 1.0) {
-        v *= 4.0;
+    while (part < 1.0) {
+        part *= 4.0;
         scale /= 2.0;
     }
-    number = (uint64_t)(v * 4503599627370496.0);
-    for (uint32_t i = 0; i < 53u; i++) {
-        const uint64_t two = (i < 27u) ? ((number >> (52u - (2u * i))) & 3u) : 0u;
+    number = (uint64_t)(part * 4503599627370496.0);
+    for (uint32_t i = 0; i < 53U; i++) {
+        uint64_t two = 0;
+        if (i < 27U) {
+            const uint32_t by = 52U - (2U * i);
+            two = number >> by;
+            two &= UINT64_C(3);
+        }
         rest = (rest << 2) | two;
         root <<= 1;
-        if (rest >= ((root << 1) + 1u)) {
-            rest -= (root << 1) + 1u;
-            root += 1u;
+        if (rest >= ((root << 1) + 1U)) {
+            rest -= (root << 1) + 1U;
+            root += 1U;
         }
     }
     if (rest > root) {
-        root += 1u;
+        root += 1U;
     }
     return ((double)root / 4503599627370496.0) * scale;
 }
 
 static float div_f32(float a, float b, uint8_t *fault)
 {
-    if (b == 0.0f) {
+    if (b == 0.0F) {
         fail(fault, FAULT_DIVISION);
-        return 0.0f;
+        return 0.0F;
     }
     return a / b;
 }
 
 static float rem_f32(float a, float b, uint8_t *fault)
 {
-    if (b == 0.0f) {
+    if (b == 0.0F) {
         fail(fault, FAULT_DIVISION);
-        return 0.0f;
+        return 0.0F;
     }
     return (float)remainder_of((double)a, (double)b);
 }

@@ -2,10 +2,16 @@
 
 static T OF(min)(T a, T b)
 {
-    return (b < a) ? b : a;
+    if (b < a) {
+        return b;
+    }
+    return a;
 }
 
 static T OF(max)(T a, T b)
 {
-    return (a < b) ? b : a;
+    if (a < b) {
+        return b;
+    }
+    return a;
 }

@@ -3,7 +3,7 @@
 static T OF(add)(T a, T b, uint8_t *fault)
 {
     const int64_t v = (int64_t)a + (int64_t)b;
-    if ((v < T_MIN) || (v > T_MAX)) {
+    if ((v < (int64_t)T_MIN) || (v > (int64_t)T_MAX)) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }
@@ -13,7 +13,7 @@ static T OF(add)(T a, T b, uint8_t *fault)
 static T OF(sub)(T a, T b, uint8_t *fault)
 {
     const int64_t v = (int64_t)a - (int64_t)b;
-    if ((v < T_MIN) || (v > T_MAX)) {
+    if ((v < (int64_t)T_MIN) || (v > (int64_t)T_MAX)) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }
@@ -22,12 +22,12 @@ static T OF(sub)(T a, T b, uint8_t *fault)
 
 static T OF(div)(T a, T b, uint8_t *fault)
 {
-    if (b == 0) {
+    if ((int64_t)b == 0) {
         fail(fault, FAULT_DIVISION);
         return 0;
     }
     const int64_t v = (int64_t)a / (int64_t)b;
-    if ((v < T_MIN) || (v > T_MAX)) {
+    if ((v < (int64_t)T_MIN) || (v > (int64_t)T_MAX)) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }
@@ -36,12 +36,12 @@ static T OF(div)(T a, T b, uint8_t *fault)
 
 static T OF(rem)(T a, T b, uint8_t *fault)
 {
-    if (b == 0) {
+    if ((int64_t)b == 0) {
         fail(fault, FAULT_DIVISION);
         return 0;
     }
     const int64_t v = (int64_t)a % (int64_t)b;
-    if ((v < T_MIN) || (v > T_MAX)) {
+    if ((v < (int64_t)T_MIN) || (v > (int64_t)T_MAX)) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }
@@ -51,7 +51,7 @@ static T OF(rem)(T a, T b, uint8_t *fault)
 static T OF(neg)(T a, uint8_t *fault)
 {
     const int64_t v = -(int64_t)a;
-    if ((v < T_MIN) || (v > T_MAX)) {
+    if ((v < (int64_t)T_MIN) || (v > (int64_t)T_MAX)) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }
@@ -60,7 +60,7 @@ static T OF(neg)(T a, uint8_t *fault)
 
 static T FROM(i64)(int64_t v, uint8_t *fault)
 {
-    if ((v < T_MIN) || (v > (int64_t)T_MAX)) {
+    if ((v < (int64_t)T_MIN) || (v > (int64_t)T_MAX)) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }

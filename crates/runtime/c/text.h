@@ -8,7 +8,7 @@ static uint32_t text_size(const uint8_t *a)
 
 static void text_clear(uint8_t *to, uint32_t most)
 {
-    for (uint32_t i = 0; i < (most + 2u); i++) {
+    for (uint32_t i = 0; i < (most + 2U); i++) {
         to[i] = 0;
     }
 }
@@ -19,19 +19,19 @@ static bool text_append(const uint8_t *from, uint32_t first, uint32_t end, uint8
     uint32_t size = text_size(to);
     uint32_t i = first;
     while (i < end) {
-        uint32_t next = i + 1u;
-        while ((next < end) && ((from[next + 2u] & 0xC0u) == 0x80u)) {
-            next += 1u;
+        uint32_t next = i + 1U;
+        while ((next < end) && ((from[next + 2U] & 0xC0U) == 0x80U)) {
+            next += 1U;
         }
         if ((size + (next - i)) > most) {
             return false;
         }
         while (i < next) {
-            to[size + 2u] = from[i + 2u];
-            size += 1u;
-            i += 1u;
+            to[size + 2U] = from[i + 2U];
+            size += 1U;
+            i += 1U;
         }
-        to[0] = (uint8_t)(size & 255u);
+        to[0] = (uint8_t)(size & 255U);
         to[1] = (uint8_t)(size >> 8);
     }
     return true;
@@ -44,9 +44,9 @@ static uint32_t text_skip(const uint8_t *a, uint32_t from, int64_t count)
     uint32_t i = from;
     int64_t left = count;
     while ((left > 0) && (i < size)) {
-        i += 1u;
-        while ((i < size) && ((a[i + 2u] & 0xC0u) == 0x80u)) {
-            i += 1u;
+        i += 1U;
+        while ((i < size) && ((a[i + 2U] & 0xC0U) == 0x80U)) {
+            i += 1U;
         }
         left -= 1;
     }
@@ -58,7 +58,7 @@ static int64_t text_len(const uint8_t *a)
     const uint32_t size = text_size(a);
     int64_t count = 0;
     for (uint32_t i = 0; i < size; i++) {
-        if ((a[i + 2u] & 0xC0u) != 0x80u) {
+        if ((a[i + 2U] & 0xC0U) != 0x80U) {
             count += 1;
         }
     }
@@ -70,8 +70,8 @@ static int32_t text_compare(const uint8_t *a, const uint8_t *b)
     const uint32_t size_a = text_size(a);
     const uint32_t size_b = text_size(b);
     for (uint32_t i = 0; (i < size_a) && (i < size_b); i++) {
-        if (a[i + 2u] != b[i + 2u]) {
-            return (a[i + 2u] < b[i + 2u]) ? -1 : 1;
+        if (a[i + 2U] != b[i + 2U]) {
+            return (a[i + 2U] < b[i + 2U]) ? -1 : 1;
         }
     }
     return (size_a == size_b) ? 0 : ((size_a < size_b) ? -1 : 1);
@@ -82,16 +82,16 @@ static int64_t text_find(const uint8_t *a, const uint8_t *b)
     const uint32_t size_a = text_size(a);
     const uint32_t size_b = text_size(b);
     int64_t character = 0;
-    if (size_b == 0u) {
+    if (size_b == 0U) {
         return 0;
     }
     for (uint32_t i = 0; (i + size_b) <= size_a; i++) {
         uint32_t k = 0;
-        if ((a[i + 2u] & 0xC0u) != 0x80u) {
+        if ((a[i + 2U] & 0xC0U) != 0x80U) {
             character += 1;
         }
-        while ((k < size_b) && (a[i + k + 2u] == b[k + 2u])) {
-            k += 1u;
+        while ((k < size_b) && (a[i + k + 2U] == b[k + 2U])) {
+            k += 1U;
         }
         if (k == size_b) {
             return character;
@@ -194,24 +194,25 @@ static void text_put(const char *letters, uint8_t *to, uint32_t most)
 {
     uint32_t size = text_size(to);
     for (uint32_t i = 0; (letters[i] != '\0') && (size < most); i++) {
-        to[size + 2u] = (uint8_t)letters[i];
-        size += 1u;
+        to[size + 2U] = (uint8_t)letters[i];
+        size += 1U;
     }
-    to[0] = (uint8_t)(size & 255u);
+    to[0] = (uint8_t)(size & 255U);
     to[1] = (uint8_t)(size >> 8);
 }
 
 static void text_put_number(uint64_t v, uint8_t *to, uint32_t most)
 {
+    static const char digits[11] = "0123456789";
     char letters[21];
     uint32_t at = 20;
     uint64_t left = v;
     letters[at] = '\0';
     do {
-        at -= 1u;
-        letters[at] = (char)('0' + (int)(left % 10u));
-        left /= 10u;
-    } while (left != 0u);
+        at -= 1U;
+        letters[at] = digits[left % 10U];
+        left /= 10U;
+    } while (left != 0U);
     text_put(&letters[at], to, most);
 }
 
@@ -226,7 +227,7 @@ static void text_from_i64(int64_t v, uint8_t *to, uint32_t most)
     text_clear(to, most);
     if (v < 0) {
         text_put("-", to, most);
-        text_put_number(~(uint64_t)v + 1u, to, most);
+        text_put_number(~(uint64_t)v + 1U, to, most);
     } else {
         text_put_number((uint64_t)v, to, most);
     }
@@ -245,13 +246,13 @@ static void text_from_time(int64_t v, uint8_t *to, uint32_t most)
         UINT64_C(1000000), UINT64_C(1000), UINT64_C(1)
     };
     static const char *const name[7] = { "d", "h", "m", "s", "ms", "us", "ns" };
-    uint64_t left = (v < 0) ? (~(uint64_t)v + 1u) : (uint64_t)v;
+    uint64_t left = (v < 0) ? (~(uint64_t)v + 1U) : (uint64_t)v;
     text_clear(to, most);
     text_put((v < 0) ? "T#-" : "T#", to, most);
-    if (left == 0u) {
+    if (left == 0U) {
         text_put("0s", to, most);
     }
-    for (uint32_t i = 0; i < 7u; i++) {
+    for (uint32_t i = 0; i < 7U; i++) {
         if (left >= unit[i]) {
             text_put_number(left / unit[i], to, most);
             text_put(name[i], to, most);
@@ -262,7 +263,7 @@ static void text_from_time(int64_t v, uint8_t *to, uint32_t most)
 
 static bool text_is_blank(uint8_t c)
 {
-    return (c == 0x20u) || ((c >= 0x09u) && (c <= 0x0Du));
+    return (c == 0x20U) || ((c >= 0x09U) && (c <= 0x0DU));
 }
 
 /* A whole number with its sign; blanks round it do not count. */
@@ -272,31 +273,31 @@ static bool text_number(const uint8_t *a, uint64_t *v, bool *negative)
     uint32_t end = text_size(a);
     *v = 0;
     *negative = false;
-    while ((i < end) && text_is_blank(a[i + 2u])) {
-        i += 1u;
+    while ((i < end) && text_is_blank(a[i + 2U])) {
+        i += 1U;
     }
-    while ((end > i) && text_is_blank(a[end + 1u])) {
-        end -= 1u;
+    while ((end > i) && text_is_blank(a[end + 1U])) {
+        end -= 1U;
     }
-    if ((i < end) && ((a[i + 2u] == (uint8_t)'-') || (a[i + 2u] == (uint8_t)'+'))) {
-        *negative = a[i + 2u] == (uint8_t)'-';
-        i += 1u;
+    if ((i < end) && ((a[i + 2U] == (uint8_t)'-') || (a[i + 2U] == (uint8_t)'+'))) {
+        *negative = a[i + 2U] == (uint8_t)'-';
+        i += 1U;
     }
     if (i >= end) {
         return false;
     }
     while (i < end) {
-        const uint8_t c = a[i + 2u];
+        const uint8_t c = a[i + 2U];
         uint64_t digit;
         if ((c < (uint8_t)'0') || (c > (uint8_t)'9')) {
             return false;
         }
         digit = (uint64_t)c - (uint64_t)'0';
-        if (*v > ((UINT64_MAX - digit) / 10u)) {
+        if (*v > ((UINT64_MAX - digit) / 10U)) {
             return false;
         }
-        *v = (*v * 10u) + digit;
-        i += 1u;
+        *v = (*v * 10U) + digit;
+        i += 1U;
     }
     return true;
 }
@@ -306,19 +307,19 @@ static bool text_to_bool(const uint8_t *a, uint8_t *fault)
     static const char *const word[4] = { "TRUE", "1", "FALSE", "0" };
     uint32_t first = 0;
     uint32_t end = text_size(a);
-    while ((first < end) && text_is_blank(a[first + 2u])) {
-        first += 1u;
+    while ((first < end) && text_is_blank(a[first + 2U])) {
+        first += 1U;
     }
-    while ((end > first) && text_is_blank(a[end + 1u])) {
-        end -= 1u;
+    while ((end > first) && text_is_blank(a[end + 1U])) {
+        end -= 1U;
     }
-    for (uint32_t i = 0; i < 4u; i++) {
+    for (uint32_t i = 0; i < 4U; i++) {
         uint32_t k = 0;
-        while (((first + k) < end) && (word[i][k] != '\0') && (a[first + k + 2u] == (uint8_t)word[i][k])) {
-            k += 1u;
+        while (((first + k) < end) && (word[i][k] != '\0') && (a[first + k + 2U] == (uint8_t)word[i][k])) {
+            k += 1U;
         }
         if (((first + k) == end) && (word[i][k] == '\0')) {
-            return i < 2u;
+            return i < 2U;
         }
     }
     fail(fault, FAULT_RANGE);
@@ -329,7 +330,7 @@ static uint64_t text_to_u64(const uint8_t *a, uint8_t *fault)
 {
     bool negative = false;
     uint64_t v = 0;
-    if (!text_number(a, &v, &negative) || (negative && (v > 0u))) {
+    if (!text_number(a, &v, &negative) || (negative && (v > 0U))) {
         fail(fault, FAULT_RANGE);
         return 0;
     }

@@ -4,12 +4,16 @@ static T OF(text_to)(const uint8_t *a, uint8_t *fault)
 {
     bool negative = false;
     uint64_t v = 0;
-    if (!text_number(a, &v, &negative) || (negative ? (v > (uint64_t)T_MAX + 1u) : (v > (uint64_t)T_MAX))) {
+    if (!text_number(a, &v, &negative) || (negative ? (v > (uint64_t)T_MAX + 1U) : (v > (uint64_t)T_MAX))) {
         fail(fault, FAULT_RANGE);
         return 0;
     }
-    if (v == 0u) {
+    if (v == 0U) {
         return 0;
     }
-    return negative ? (T)(-(int64_t)(v - 1u) - 1) : (T)v;
+    if (negative) {
+        v -= 1U;
+        return (T)(-(int64_t)v - 1);
+    }
+    return (T)v;
 }

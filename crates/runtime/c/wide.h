@@ -29,6 +29,8 @@ static int64_t mul_i64(int64_t a, int64_t b, uint8_t *fault)
         over = a < (INT64_MIN / b);
     } else if ((a < 0) && (b < 0)) {
         over = b < (INT64_MAX / a);
+    } else {
+        /* the product of zero is zero */
     }
     if (over) {
         fail(fault, FAULT_OVERFLOW);
@@ -97,7 +99,7 @@ static uint64_t sub_u64(uint64_t a, uint64_t b, uint8_t *fault)
 
 static uint64_t mul_u64(uint64_t a, uint64_t b, uint8_t *fault)
 {
-    if ((a != 0u) && (b > (UINT64_MAX / a))) {
+    if ((a != 0U) && (b > (UINT64_MAX / a))) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }
@@ -106,7 +108,7 @@ static uint64_t mul_u64(uint64_t a, uint64_t b, uint8_t *fault)
 
 static uint64_t div_u64(uint64_t a, uint64_t b, uint8_t *fault)
 {
-    if (b == 0u) {
+    if (b == 0U) {
         fail(fault, FAULT_DIVISION);
         return 0;
     }
@@ -115,7 +117,7 @@ static uint64_t div_u64(uint64_t a, uint64_t b, uint8_t *fault)
 
 static uint64_t rem_u64(uint64_t a, uint64_t b, uint8_t *fault)
 {
-    if (b == 0u) {
+    if (b == 0U) {
         fail(fault, FAULT_DIVISION);
         return 0;
     }
@@ -124,7 +126,7 @@ static uint64_t rem_u64(uint64_t a, uint64_t b, uint8_t *fault)
 
 static uint64_t neg_u64(uint64_t a, uint8_t *fault)
 {
-    if (a != 0u) {
+    if (a != 0U) {
         fail(fault, FAULT_OVERFLOW);
         return 0;
     }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use g7_codegen::{Clock, Language, Printed, Style};
+use g7_codegen::{Clock, Language, Parts, Printed, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::StepId;
@@ -159,15 +159,19 @@ pub fn c_program(
     let mut table = String::new();
     for (i, subject) in subjects.iter().enumerate() {
         let name = format!("c{i}");
-        let printed =
-            subject.print(Language::C, style, &name).map_err(|e| format!("{}: {e}", subject.title))?;
+        // Charts with files of their own and charts that share `g7.c` are one program.
+        let parts = if i % 4 == 3 { Parts::Whole } else { Parts::Apart };
+        let printed = subject
+            .print_as(Language::C, style, &name, parts)
+            .map_err(|e| format!("{}: {e}", subject.title))?;
         for file in &printed.files {
             std::fs::write(folder.join(&file.name), &file.text).map_err(|e| e.to_string())?;
         }
         let _ = writeln!(main, "#include \"{name}.h\"");
         main += &player(subject, &printed, &name);
         let _ = writeln!(table, "        case {i}: play_{name}(); break;");
-        files.push(format!("{name}.c"));
+        let sources = printed.files.iter().map(|f| f.name.clone()).filter(|n| n.ends_with(".c"));
+        files.extend(sources.filter(|n| n != "g7.c" || !files.contains(n)).collect::<Vec<_>>());
     }
     let _ = writeln!(
         main,

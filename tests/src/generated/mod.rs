@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-use g7_codegen::{Language, Options, Printed, Room, Style};
+use g7_codegen::{Language, Options, Parts, Printed, Room, Style};
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_compile::{Compiled, compile_with};
@@ -257,8 +257,23 @@ impl Subject {
     ///
     /// The language cannot express the chart.
     pub fn print(&self, language: Language, style: Style, name: &str) -> Result<Printed, String> {
+        self.print_as(language, style, name, Parts::Whole)
+    }
+
+    /// The same in these files.
+    ///
+    /// # Errors
+    ///
+    /// The language cannot express the chart.
+    pub fn print_as(
+        &self,
+        language: Language,
+        style: Style,
+        name: &str,
+        parts: Parts,
+    ) -> Result<Printed, String> {
         let options = Options { language, style, room: self.room, name, source: &self.text };
-        g7_codegen::print(&self.compiled, &options)
+        g7_codegen::print_as(&self.compiled, &options, parts)
             .map_err(|p| p.iter().map(|p| p.what.clone()).collect::<Vec<_>>().join("; "))
     }
 
