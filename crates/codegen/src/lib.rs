@@ -4,6 +4,7 @@
 //! equations of a scan                     -> flat       -> tree -> C99 | Rust | an Arduino sketch
 //! equations of its code, tables, runtime  -> structured -> tree -> the same
 //! equations of a scan                     -> plc        -> ST | IL | LD
+//! C, names, types                         -> fmu        -> the files of an FMU
 //! ```
 //!
 //! # Invariants
@@ -25,6 +26,7 @@ mod c_words;
 mod chart;
 mod facts;
 mod flat;
+pub mod fmu;
 mod frame;
 mod lets;
 mod names;
