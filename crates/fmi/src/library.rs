@@ -49,7 +49,7 @@ type Messages = Mutex<Vec<String>>;
 pub struct Instance {
     version: Version,
     handle: Handle,
-    /// What the FMU said; the callbacks write here, so its place does not change.
+    /// The messages of the FMU; the callbacks write here, so their place does not change.
     messages: Box<Messages>,
     /// Read by the FMU as long as it lives.
     _callbacks: Box<Callbacks>,
