@@ -184,7 +184,6 @@ fn unpacked(folder: &Path, subject: &Subject, version: Version) -> Result<(), St
         ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror", "-O0", "-shared", "-fPIC"];
     let out = Command::new("gcc")
         .args(strict)
-        .arg(format!("-D{}", version.definition()))
         .args(&made.compiled)
         .arg("-o")
         .arg(library)

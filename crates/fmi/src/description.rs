@@ -178,4 +178,12 @@ mod tests {
         }
         assert!(Description::read(&fine.replace("'m'", "'../m'")).is_err());
     }
+
+    #[test]
+    fn deep_elements_and_a_document_type_are_no_harm() {
+        let deep = "<a>".repeat(300_000) + &"</a>".repeat(300_000);
+        assert!(Description::read(&deep).is_err());
+        let bomb = "<!DOCTYPE a [<!ENTITY b 'c'>]><a>&b;</a>";
+        assert!(Description::read(bomb).is_err());
+    }
 }

@@ -116,9 +116,8 @@ fn library(version: Version, made: &Files) -> Result<Option<(String, Vec<u8>)>, 
         files::write(&place.0.join(name), file.text.as_bytes())?;
     }
     let file = format!("{}{}", made.identifier, std::env::consts::DLL_SUFFIX);
-    let definition = format!("-D{}", version.definition());
     let mut command = Command::new(&compiler);
-    command.current_dir(&place.0).args(["-std=c99", "-O2", "-shared", "-fvisibility=hidden", &definition]);
+    command.current_dir(&place.0).args(["-std=c99", "-O2", "-shared", "-fvisibility=hidden"]);
     if !cfg!(windows) {
         command.arg("-fPIC");
     }

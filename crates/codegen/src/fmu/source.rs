@@ -23,14 +23,16 @@ pub(super) fn source(all: &[Variable], version: Version, name: &str, period: i64
     };
     let mut text = format!(
         "/* The chart {name} as an FMU (FMI {number}.0, Co-Simulation), printed by G7.\n *\n \
-         * In a library of its own, with FMI{number}_OVERRIDE_FUNCTION_PREFIX, the functions have the names of the\n \
-         * standard. Linked into a program, they begin with {name}_ as well. */\n\
+         * The functions have the names of the standard. To link several FMUs into one program, define a prefix for\n \
+         * each: FMI{number}_FUNCTION_PREFIX={name}_ */\n\
          #include \"{name}.h\"\n#include <stdarg.h>\n#include <stddef.h>\n#include <stdio.h>\n#include <stdlib.h>\n\
          #include <string.h>\n\n\
          typedef {name}_state fmu_chart;\n#define fmu_chart_init {name}_init\n#define fmu_chart_scan {name}_scan_in_place\n\
          #define fmu_chart_is_active {name}_is_active\n\n\
-         #if defined(FMI{number}_OVERRIDE_FUNCTION_PREFIX)\n#define FMU_FULL(name) name\n#else\n\
-         #define FMU_FULL(name) {name}_##name\n#endif\n\n\
+         #if defined(FMI{number}_FUNCTION_PREFIX) && !defined(FMI{number}_OVERRIDE_FUNCTION_PREFIX)\n\
+         #define FMU_JOINED(prefix, name) prefix##name\n#define FMU_JOIN(prefix, name) FMU_JOINED(prefix, name)\n\
+         #define FMU_FULL(name) FMU_JOIN(FMI{number}_FUNCTION_PREFIX, name)\n#else\n\
+         #define FMU_FULL(name) name\n#endif\n\n\
          #if defined(_WIN32)\n#define FMU_EXPORT __declspec(dllexport)\n#elif defined(__GNUC__)\n\
          #define FMU_EXPORT __attribute__((visibility(\"default\")))\n#else\n#define FMU_EXPORT\n#endif\n\n\
          #define FMU_TOKEN \"{TOKEN}\"\n#define FMU_PERIOD_NS INT64_C({period})\n\n"

@@ -10,14 +10,6 @@ pub enum Version {
 }
 
 impl Version {
-    /// The macro of a library of its own: its functions have no prefix.
-    pub fn definition(self) -> &'static str {
-        match self {
-            Version::V2 => "FMI2_OVERRIDE_FUNCTION_PREFIX",
-            Version::V3 => "FMI3_OVERRIDE_FUNCTION_PREFIX",
-        }
-    }
-
     /// The folder of the library for a machine, below `binaries`; `None` where the standard has no name.
     pub fn folder(self, system: &str, machine: &str) -> Option<String> {
         match self {
