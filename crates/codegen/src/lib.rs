@@ -4,6 +4,7 @@
 //! equations of a scan                     -> flat       -> tree -> C99 | Rust | an Arduino sketch
 //! equations of its code, tables, runtime  -> structured -> tree -> the same
 //! equations of a scan                     -> plc        -> ST | IL | LD
+//! C, names, types                         -> fmu        -> the files of an FMU
 //! ```
 //!
 //! # Invariants
@@ -28,6 +29,7 @@ mod facts;
 mod files;
 mod fixed;
 mod flat;
+pub mod fmu;
 mod frame;
 mod lets;
 mod names;

@@ -190,6 +190,7 @@ Examples:
   g7 run tank --headless --for 60s --trace out.vcd for GTKWave; .csv for a spreadsheet
   g7 run tank --headless --set start=1@2s --set start=0@2.5s
   g7 run tank --profile iec61131 --scan 40ms       under other rules of evolution
+  g7 run tank --plant tank.fmu --wire h=level      an FMU is the plant
   g7 run Sorter.xml                                a file of another tool, here JGrafchart's
   g7 run sorter.g7 --online                        drives the devices of sorter.io.toml
   g7 run sorter.g7 --online --simulate line1       the same, with the plant in place of one
@@ -217,9 +218,14 @@ pub(crate) struct Run {
     /// Time between scans, instead of the file's own (10ms).
     #[arg(long, value_parser = values::duration, value_name = "TIME")]
     pub(crate) scan: Option<Nanos>,
-    /// The plant to use if there are several; `none` for no plant.
+    /// The plant to use if there are several; `none` for no plant; the file of an FMU, which is a program
+    /// that you trust (`tank.fmu`, without the terminal view).
     #[arg(long, value_name = "NAME")]
     pub(crate) plant: Option<String>,
+    /// With an FMU as the plant: connect an output of the charts or the FMU to an input of the other. The
+    /// same names are connected anyway.
+    #[arg(conflicts_with = "online", long, value_parser = values::wire, value_name = "OUTPUT=INPUT")]
+    pub(crate) wire: Vec<(String, String)>,
     /// The seed of the plant's random numbers; the same seed gives the same run.
     #[arg(long, default_value_t = 0, value_name = "NUMBER")]
     pub(crate) seed: u64,

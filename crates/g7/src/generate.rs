@@ -14,7 +14,7 @@ use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::Source;
-use crate::{files, sources, style, values};
+use crate::{files, fmu, sources, style, values};
 
 const EXAMPLES: &str = "\
 Examples:
@@ -39,6 +39,9 @@ Examples:
   g7 gen twincat tank -o out      TwinCAT 3: out/tank.TcPOU
   g7 gen logix tank -o out        Logix 5000: out/tank.L5X, a program
   g7 gen unity tank -o out        Control Expert, Unity Pro: out/tank.XST, a section
+  g7 gen fmu tank                 tank.fmu for simulators: FMI 2.0, Co-Simulation
+  g7 gen fmu tank --fmi 3 -o out/tank3.fmu
+                                  the same for FMI 3.0
 
 The code does what `g7 run` does, scan by scan. What a language cannot say is
 reported with its place, and nothing is written then.
@@ -104,6 +107,9 @@ enum Words {
     /// A section for Control Expert or Unity Pro in Structured Text (XST).
     #[command(after_help = EXAMPLES)]
     Unity(Plc),
+    /// An FMU for simulators such as OpenModelica, Dymola or Simulink (FMI, Co-Simulation).
+    #[command(after_help = EXAMPLES)]
+    Fmu(fmu::Fmu),
 }
 
 /// The arguments for C and Rust.
@@ -276,6 +282,26 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
         Words::Twincat(what) => what.print(plc::Form::TwinCat, "TcPOU"),
         Words::Logix(what) => what.print(plc::Form::Logix, "L5X"),
         Words::Unity(what) => what.print(plc::Form::Unity, "XST"),
+        Words::Fmu(what) => packed(what),
+    }
+}
+
+/// An FMU of the chart.
+fn packed(args: &fmu::Fmu) -> Result<Verdict, Failure> {
+    let path = files::one(&args.file)?;
+    let (source, compiled) = match read(&path, args.profile)? {
+        Ok(read) => read,
+        Err(verdict) => return Ok(verdict),
+    };
+    let name = args.name.clone().unwrap_or_else(|| name_of(&path));
+    match g7_codegen::fmu::fmu(&compiled, args.fmi.into(), &name, &source.text) {
+        Ok(fmu) => {
+            if !fmu.problems.is_empty() {
+                found(&source, &fmu.problems);
+            }
+            fmu::pack(args, &name, &fmu)
+        }
+        Err(problems) => Ok(found(&source, &problems)),
     }
 }
 
@@ -370,19 +396,31 @@ fn tell_sizes(sizes: Sizes, room: Room, board: Option<Board>) -> bool {
     false
 }
 
-fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
-    let path = files::one(&what.file)?;
-    let source = sources::load(&path, 0)?;
+/// A chart that compiles; otherwise its errors are told.
+fn read(
+    path: &Path,
+    profile: Option<ProfileName>,
+) -> Result<Result<(Source, g7_compile::Compiled), Verdict>, Failure> {
+    let source = sources::load(path, 0)?;
     if source.has_errors() {
-        return Ok(found(&source, &source.problems));
+        return Ok(Err(found(&source, &source.problems)));
     }
-    let (compiled, problems) = match what.profile {
+    let (compiled, problems) = match profile {
         Some(profile) => g7_compile::compile_as(&source.document, profile),
         None => g7_compile::compile(&source.document),
     };
     let Some(compiled) = compiled else {
         let errors: Vec<Problem> = problems.into_iter().filter(|p| p.severity() == Severity::Error).collect();
-        return Ok(found(&source, &errors));
+        return Ok(Err(found(&source, &errors)));
+    };
+    Ok(Ok((source, compiled)))
+}
+
+fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
+    let path = files::one(&what.file)?;
+    let (source, compiled) = match read(&path, what.profile)? {
+        Ok(read) => read,
+        Err(verdict) => return Ok(verdict),
     };
     let name = what.name.clone().unwrap_or_else(|| name_of(&path));
     match tongue.print(&compiled, &name, &source.text) {

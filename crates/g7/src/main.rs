@@ -27,6 +27,7 @@ mod export;
 mod failure;
 mod files;
 mod fmt;
+mod fmu;
 mod generate;
 mod history;
 mod import;

@@ -43,6 +43,14 @@ pub(crate) fn target(text: &str) -> Result<TargetPlc, String> {
         .ok_or_else(|| format!("expected one of {}", all.map(TargetPlc::name).join(", ")))
 }
 
+/// Two names: an output and the input that it is connected to.
+pub(crate) fn wire(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((from, to)) if !from.is_empty() && !to.is_empty() => Ok((from.to_owned(), to.to_owned())),
+        _ => Err("write OUTPUT=INPUT".to_owned()),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,6 +9,7 @@ use g7_host::{
 };
 
 use super::keep::{self, Keeper};
+use super::outside::{self, Outside};
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
@@ -47,6 +48,8 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
     let script = script(bench, args)?;
     let shown = shown(bench, args)?;
+    let outside = args.plant.as_deref().filter(|p| outside::is_fmu(Some(p)));
+    let mut outside = outside.map(|path| Outside::open(Path::new(path), bench, &args.wire)).transpose()?;
     let mut runner = bench.runner(args.seed);
     if args.record.is_some() {
         runner = runner.with_tape();
@@ -61,7 +64,8 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
         if args.real_time { Box::new(WallClock::default()) } else { Box::new(VirtualClock::default()) };
     let mut keeper = Keeper::new(bench, &runner, args.retain.as_deref());
     let mut live = args.real_time.then_some(&mut keeper);
-    let halt = play(bench, &mut runner, &mut recording, &script, length, &mut *clock, &mut live)?;
+    let sides = (&mut runner, &mut outside);
+    let halt = play(bench, sides, &mut recording, &script, length, &mut *clock, &mut live)?;
     let verdict = if let Some(halt) = halt {
         let place = bench.halt_place(halt).map_or_else(String::new, |at| format!("{}: ", source.place(at)));
         let (bad, now) = (style::BAD, Nanos::new(runner.state().now()).plain());
@@ -113,7 +117,7 @@ fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
 /// Makes scans until `length` has passed, including the scan at its end.
 fn play(
     bench: &Bench,
-    runner: &mut Runner,
+    (runner, outside): (&mut Runner, &mut Option<Outside>),
     recording: &mut Recording,
     script: &[(Nanos, &Item, Value)],
     length: Nanos,
@@ -127,11 +131,14 @@ fn play(
         clock.wait_until(runner.due());
         runner.catch_up(clock.now());
         while let Some((_, item, value)) = script.next_if(|(at, ..)| *at <= runner.due()) {
-            if bench.is_driven(runner, item) {
+            if bench.is_driven(runner, item) || outside.as_ref().is_some_and(|o| o.drives(bench, item)) {
                 bench.force(runner, item, value);
             } else {
                 bench.set(runner, item, value);
             }
+        }
+        if let Some(outside) = outside {
+            outside.step(bench, runner)?;
         }
         let done = runner.scan();
         recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));

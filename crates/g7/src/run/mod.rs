@@ -2,6 +2,7 @@
 
 mod headless;
 mod keep;
+mod outside;
 
 use std::io::{IsTerminal, stdin, stdout};
 use std::path::Path;
@@ -21,14 +22,22 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
     if args.drive.online {
+        if outside::is_fmu(args.plant.as_deref()) {
+            return Err(Failure::Usage("an FMU is a plant of runs without --online".to_owned()));
+        }
         return online(&path, source, args);
     }
-    let options = Options { profile: args.profile, scan: args.scan, plant: args.plant.as_deref(), asks: &[] };
+    let is_fmu = outside::is_fmu(args.plant.as_deref());
+    if !is_fmu && !args.wire.is_empty() {
+        return Err(Failure::Usage("--wire is for a plant that is an FMU: --plant FILE.fmu".to_owned()));
+    }
+    let plant = if is_fmu { Some("none") } else { args.plant.as_deref() };
+    let options = Options { profile: args.profile, scan: args.scan, plant, asks: &[] };
     let Some(bench) = wiring::build(&source, &options)? else { return Ok(Verdict::Found) };
     if let Some(tape) = &args.replay {
         return headless::replay(&bench, args, tape);
     }
-    let asked = args.headless || args.trace.is_some() || args.record.is_some() || args.real_time;
+    let asked = args.headless || is_fmu || args.trace.is_some() || args.record.is_some() || args.real_time;
     if asked || !stdin().is_terminal() || !stdout().is_terminal() {
         if !asked {
             talk!("no terminal: running headless; `g7 run --help` has the options");
