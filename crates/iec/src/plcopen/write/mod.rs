@@ -5,6 +5,7 @@
 //! and behind the charts become programs in Structured Text, whose place in the
 //! task says when they run.
 
+mod clocks;
 mod control;
 mod declare;
 mod place;
