@@ -18,8 +18,24 @@ use g7_tests::generated::project;
 /// standard: several steps with one output, pulses of initial steps, bodies that run once more, `R` after `SD`,
 /// and steps that other charts read; and inverted channels and actions of macro-steps, which are rewritten; steps
 /// whose time another chart reads, conditions that read what actions drive, step times in scans, constants of
-/// several programs, and a block of the file that is called with an output.
-const CHARTS: [(&str, &str); 11] = [
+/// several programs, and a block of the file that is called with an output; a step that nothing reaches, and one
+/// that is called like its program.
+const CHARTS: [(&str, &str); 12] = [
+    (
+        "never",
+        "input a, b : BOOL
+         output q, r : BOOL
+         chart Press {
+           initial step Rest { N r if Out.X or Out.T > 1s }
+           step press { N q }
+           step Out { N q }
+           step Behind
+           Rest -> press when a
+           press -> Rest when b and not Out.X
+           Out -> Behind when a
+           (press, Out) -> Rest when a
+         }",
+    ),
     (
         "clocks",
         "input a, b : BOOL

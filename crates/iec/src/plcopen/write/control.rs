@@ -24,6 +24,7 @@ use g7_model::{
 };
 
 use super::clocks::{Clocks, outputs_apart};
+use super::never::{never, seconds};
 use crate::nodes::{self, Taken};
 
 /// Moves the actions that matiec treats otherwise than the standard into one body of each chart.
@@ -31,6 +32,7 @@ pub(super) fn control(mut document: Document, problems: &mut Vec<Problem>) -> Do
     let mut taken = names(&document);
     let written = written(&document);
     let (variables, given) = (variables(&document, |_| true), variables(&document, |v| v.init.is_some()));
+    seconds(&mut document, problems);
     let mut clocks = Clocks::default();
     for item in &mut document.items {
         match item {
@@ -81,6 +83,7 @@ struct Control<'c> {
 impl Control<'_> {
     fn chart(mut self, chart: &mut Chart, variables: &HashSet<String>) {
         let at = chart.name.at.0;
+        never(chart, self.problems);
         self.apart(chart, variables);
         let named: HashMap<String, NamedAction> = chart
             .items
@@ -169,11 +172,13 @@ impl Control<'_> {
         chart.items.push(ChartItem::Step(step));
     }
 
-    /// Gives a step that has the name of a variable another one, because its activity is read now.
+    /// Gives a step that has the name of a variable another one, because its activity is read now, and one that has
+    /// the name of the program, which matiec cannot tell apart in its C.
     fn apart(&mut self, chart: &mut Chart, variables: &HashSet<String>) {
         let title = chart.name.text.clone();
         let mut new: HashMap<String, String> = HashMap::new();
-        for step in chart.steps().filter(|s| variables.contains(&key(&s.name.text))) {
+        let twin = |name: &str| variables.contains(&key(name)) || key(name) == key(&title);
+        for step in chart.steps().filter(|s| twin(&s.name.text)) {
             let name = self.taken.give(&format!("{title}_{}", step.name.text));
             let what = format!("`{}` is called `{name}` there", step.name.text);
             self.problems.push(Problem::new(&codes::RENAMED, step.name.at.0, what));

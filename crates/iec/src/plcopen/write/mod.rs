@@ -8,6 +8,7 @@
 mod clocks;
 mod control;
 mod declare;
+mod never;
 mod place;
 mod project;
 mod sfc;
