@@ -16,8 +16,84 @@ use g7_tests::generated::project;
 /// Charts for which the generators need a form of their own: with chained divergences, jumps, macro-steps, two
 /// charts, addresses, function blocks, and one without variables; and what matiec does otherwise than the
 /// standard: several steps with one output, pulses of initial steps, bodies that run once more, `R` after `SD`,
-/// and steps that other charts read; and inverted channels and actions of macro-steps, which are rewritten.
-const CHARTS: [(&str, &str); 7] = [
+/// and steps that other charts read; and inverted channels and actions of macro-steps, which are rewritten; steps
+/// whose time another chart reads, conditions that read what actions drive, step times in scans, constants of
+/// several programs, and a block of the file that is called with an output; a step that nothing reaches, and one
+/// that is called like its program.
+const CHARTS: [(&str, &str); 12] = [
+    (
+        "never",
+        "input a, b : BOOL
+         output q, r : BOOL
+         chart Press {
+           initial step Rest { N r if Out.X or Out.T > 1s }
+           step press { N q }
+           step Out { N q }
+           step Behind
+           Rest -> press when a
+           press -> Rest when b and not Out.X
+           Out -> Behind when a
+           (press, Out) -> Rest when a
+         }",
+    ),
+    (
+        "clocks",
+        "input a, b : BOOL
+         const far : TIME := 300ms
+         chart One {
+           initial step S1  step S2  macro M = Inner
+           S1 -> S2 when S4.X and S4.T >= 200ms
+           S2 -> S1 when S3.T > far
+           S2 -> M when b
+           M -> S1 when M.T > 400ms
+         }
+         macrochart Inner { entry step I  exit step O  I -> O when a }
+         chart Two { initial step S3  step S4  S3 -> S4 when a  S4 -> S3 when S2.X and S2.T >= 100ms or not a }",
+    ),
+    (
+        "before",
+        "input a, b : BOOL
+         output q, r, s, t : BOOL
+         var n : INT
+         chart G {
+           initial step A { N r  N q if r  N n := n + 1 }
+           step B { N r if not q  N s if n > 9  N t if not t }
+           A -> B when a
+           B -> A when b
+           initial step C { N q if s }
+           step D { N t if r }
+           C -> D when b
+           D -> C when a
+         }",
+    ),
+    (
+        "scans",
+        "profile iec61131 { scan-clock }
+         input a, b : BOOL
+         output q : BOOL
+         var n : INT
+         var x : REAL
+         chart G {
+           initial step A { N x := A.s }
+           step B { N q  N n := B.t }
+           A -> B when a and A.t >= 3 or A.s > 0.085
+           B -> A when B.t > 2
+         }
+         chart H { initial step C  step D  C -> D when B.t = 2  D -> C when b and D.s >= 0.015 }",
+    ),
+    (
+        "outputs",
+        "input a : BOOL
+         output q, r : BOOL
+         var pause : TON
+         pre { pause(IN := a, PT := 100ms, Q => q) }
+         chart G {
+           initial step A { N { if a then pause(IN := not a, PT := 50ms, Q => r) end_if } }
+           step B
+           A -> B when q
+           B -> A when not a
+         }",
+    ),
     (
         "channels",
         "input a, b : BOOL
@@ -104,6 +180,42 @@ const CHARTS: [(&str, &str); 7] = [
     ),
 ];
 
+/// One of the charts; those without a profile have that of the standard.
+fn chart(name: &str, text: &str) -> Document {
+    let profile = if text.starts_with("profile") { "" } else { "profile iec61131\n" };
+    let (document, problems) = g7_syntax::parse(&format!("{profile}{text}"), FileId(0));
+    assert!(problems.is_empty(), "{name}: {problems:?}");
+    document
+}
+
+/// The project for each tool is read again and runs as the chart, without any peer.
+#[test]
+fn projects_run_as_their_charts() {
+    let plcopen = g7_exchange::named("plcopen").expect("a format of the table");
+    for (name, text) in CHARTS {
+        let document = chart(name, text);
+        let before = g7_compile::compile(&document).0.expect("the chart is compiled");
+        for dialect in Dialect::ALL {
+            let written = plcopen.write_in(&document, dialect).expect("it has dialects");
+            let lost: Vec<_> = written.problems.iter().filter(|p| p.severity() == Severity::Error).collect();
+            assert!(lost.is_empty(), "{name}: {lost:?}");
+            let (again, problems) = plcopen.read(written.text.as_bytes(), FileId(0)).expect("it is read");
+            let (compiled, more) = g7_compile::compile(&again);
+            let behind =
+                compiled.unwrap_or_else(|| panic!("{name}: {problems:?} {more:?}\n{}", written.text));
+            for seed in 1..4 {
+                let scans = project::scans(&before, seed, 300, 10_000_000, false);
+                let (want, got) = (project::of_engine(&before, &scans), project::of_engine(&behind, &scans));
+                let (names, differ) = project::difference(&want, &got);
+                assert!(names > 0, "{name}: no name in common");
+                if let Some(differ) = differ {
+                    panic!("{name} for {}, seed {seed}: {differ}\n{}", dialect.word(), written.text);
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn beremiz_and_openplc_open_projects() {
     let readers = readers();
@@ -113,8 +225,7 @@ fn beremiz_and_openplc_open_projects() {
     let plcopen = g7_exchange::named("plcopen").expect("a format of the table");
     for reader in &readers {
         for (name, text) in CHARTS {
-            let (document, problems) = g7_syntax::parse(&format!("profile iec61131\n{text}"), FileId(0));
-            assert!(problems.is_empty(), "{name}: {problems:?}");
+            let document = chart(name, text);
             let dialect = if reader.name == "OpenPLC" { Dialect::OpenPlc } else { Dialect::Beremiz };
             let written = plcopen.write_in(&document, dialect).expect("it has dialects");
             let lost: Vec<_> = written.problems.iter().filter(|p| p.severity() == Severity::Error).collect();

@@ -19,7 +19,7 @@ use g7_model::visit_mut::{self, Use, Visitor};
 
 /// The document of a file.
 pub(super) fn document(root: Xml, report: &mut Report) -> Document {
-    let controller = kid(root, "Controller");
+    let controller = if root.has_tag_name("Controller") { Some(root) } else { kid(root, "Controller") };
     let charts: Vec<Xml> = root.descendants().filter(|n| n.has_tag_name("SFCContent")).collect();
     if charts.is_empty() {
         let what = "there is no routine in SFC in the file";

@@ -21,10 +21,17 @@ use g7_model::{Document, FileId, Problem};
 use g7_iec::report::Report;
 use g7_iec::xml;
 
-/// True if the first element is the root of such a file.
-pub(crate) fn fits(_: &str, root: Option<&str>, _: &[u8]) -> bool {
-    root == Some("RSLogix5000Content")
+/// The elements that a part of such a file begins with.
+const PARTS: [&str; 5] = ["Controller", "Programs", "Program", "Routines", "Routine"];
+
+/// True if the first element is the root of such a file, or of a part of one with a chart in it.
+pub(crate) fn fits(_: &str, root: Option<&str>, bytes: &[u8]) -> bool {
+    let has_chart = || bytes.windows(CHART.len()).any(|w| w == CHART);
+    root == Some("RSLogix5000Content") || root.is_some_and(|r| PARTS.contains(&r)) && has_chart()
 }
+
+/// The beginning of a chart's element.
+const CHART: &[u8] = b"<SFCContent";
 
 /// Reads a project, program or routine.
 pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {

@@ -96,3 +96,32 @@ fn what_has_no_counterpart_is_told_with_its_line() {
         document.profile().is_some_and(|p| p.switches.iter().any(|(s, _)| *s == Switch::Stable(true)));
     assert!(stable, "UntilFalse: until no transition is true");
 }
+
+/// A part of a file is recognised by its first element and the chart in it, whichever part it is.
+#[test]
+fn parts_of_files_are_read() {
+    let whole = String::from_utf8(own("l5x", "filler.L5X")).expect("text");
+    // Of several elements with one name the first that has a chart.
+    let part = |tag: &str| {
+        let chart = whole.find("<SFCContent").expect("a chart");
+        let before = whole.get(..chart).expect("the text before it");
+        let from = before.rfind(&format!("<{tag} ")).or_else(|| before.rfind(&format!("<{tag}>")));
+        let (from, end) = (from.expect("it begins"), format!("</{tag}>"));
+        let to = whole.get(chart..).and_then(|rest| rest.find(&end)).expect("it ends") + chart + end.len();
+        whole.get(from..to).expect("the part").to_owned()
+    };
+    let chart = |d: &g7_model::Document| {
+        let chart = d.charts().next().expect("a chart");
+        (chart.name.text.clone(), chart.steps().count(), chart.transitions().count())
+    };
+    for tag in ["Controller", "Programs", "Program", "Routines", "Routine"] {
+        let text = part(tag);
+        let format = g7_exchange::recognise("part.xml", text.as_bytes()).map(|f| f.word);
+        assert_eq!(format, Some("l5x"), "{tag}");
+        let (found, problems) = read("l5x", text.as_bytes());
+        assert!(errors(&problems).is_empty() || tag.starts_with("Routine"), "{tag}: {problems:?}");
+        assert_eq!(chart(&found), chart(&document()), "{tag}");
+    }
+    // The same words without a chart are somebody else's.
+    assert!(g7_exchange::recognise("part.xml", b"<Program><x/></Program>").is_none());
+}

@@ -169,7 +169,7 @@ impl<'d> Lower<'d> {
             };
         };
         if matches!(qualifier, Qualifier::P0 | Qualifier::P1) {
-            let is = self.expr(condition, at);
+            let is = self.expr(condition, &At { condition: true, ..at.clone() });
             return plain(vec![nodes::when(is, list, Vec::new(), span)]);
         }
         let mut calls = Vec::new();
@@ -221,7 +221,7 @@ impl<'d> Lower<'d> {
     ) -> Option<Expr> {
         let mut is = self.active(drive.step, span, at, 0);
         if let Some(c) = drive.condition {
-            is = nodes::and(is, self.expr(c, at), span);
+            is = nodes::and(is, self.expr(c, &At { condition: true, ..at.clone() }), span);
         }
         let (kind, input) = match drive.qualifier {
             Qualifier::N | Qualifier::S | Qualifier::R => return Some(is),

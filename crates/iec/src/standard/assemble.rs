@@ -65,8 +65,12 @@ impl<'d> Lower<'d> {
         self.show(&mut charts);
         let mut body = std::mem::take(&mut self.channels);
         body.append(&mut self.looking);
+        if returns(&pre) && !(self.copies.is_empty() && self.sections.is_empty()) {
+            self.lost(at, "RETURN in a body before the charts: what is computed behind it would not run");
+        }
         body.append(&mut pre);
         body.append(&mut self.sections);
+        self.copied(&mut body);
         if let Some(name) = &self.started {
             let on = nodes::boolean(true, at);
             body.push(nodes::assign(nodes::name(&[name], at), on, at));
@@ -76,6 +80,10 @@ impl<'d> Lower<'d> {
         all.append(&mut items);
         all.extend(std::mem::take(&mut self.new_globals).into_iter().map(Item::Var));
         all.append(&mut functions);
+        if let Some(name) = &self.first {
+            let off = nodes::boolean(false, at);
+            post.insert(0, nodes::assign(nodes::name(&[name], at), off, at));
+        }
         let body_of = |list: Vec<Stmt>| Body::St(nodes::block(list, at));
         if !body.is_empty() {
             all.push(Item::Pre(body_of(body), at.into()));

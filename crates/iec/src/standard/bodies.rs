@@ -2,8 +2,8 @@
 
 use g7_model::codes;
 use g7_model::{
-    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, Literal, Name, Nanos, Path, Span, Stmt, StmtKind, Type,
-    UnaryOp, VarKind,
+    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, Literal, Name, Path, Span, Stmt, StmtKind, Type, UnaryOp,
+    VarKind,
 };
 
 use super::lower::Lower;
@@ -28,6 +28,8 @@ pub(super) struct At<'d> {
     pub(super) function: bool,
     /// The section whose body this is.
     pub(super) section: Option<&'d str>,
+    /// True in the condition of an action. All of them are evaluated before any action and body of the scan.
+    pub(super) condition: bool,
 }
 
 impl<'d> Lower<'d> {
@@ -93,12 +95,15 @@ impl<'d> Lower<'d> {
                 Some(value) => value,
                 None => self.nothing(span, "a function sees no variables but its own"),
             },
+            Some(Ref::Var(key)) if at.condition && self.moved.contains(&key) => self.copy(key, span),
             Some(Ref::Var(key)) => self.variable(key, span, at),
             Some(Ref::Member(key, member)) if !at.function => {
                 let name = self.var_name(key, at);
                 nodes::name(&[&name, member], span)
             }
             Some(Ref::Active(step)) if !at.function => self.active(step, span, at, 0),
+            Some(Ref::Time(step)) if !at.function && self.scan_clock => self.counted(step, false, span, at),
+            Some(Ref::Seconds(step)) if !at.function && self.scan_clock => self.counted(step, true, span, at),
             Some(Ref::Time(step)) if !at.function => self.time_of(step, span, at),
             Some(Ref::Section(_, section)) if at.section == Some(&*section.name.text) => {
                 self.section_name(path, span, at)
@@ -169,7 +174,13 @@ impl<'d> Lower<'d> {
             (own, here) if own == here => self.step_member(step, "X", span),
             _ => {
                 let name = self.mirror(step, span);
-                nodes::name(&[&name], span)
+                let is = nodes::name(&[&name], span);
+                if !self.initial(step) {
+                    return is;
+                }
+                // The step may be left in the first scan, so its action may never write the variable.
+                let first = self.first(span);
+                nodes::or(is, nodes::name(&[&first], span), span)
             }
         }
     }
@@ -177,15 +188,13 @@ impl<'d> Lower<'d> {
     pub(super) fn time_of(&mut self, step: StepKey, span: Span, at: &At) -> Expr {
         let own = self.program_of(step.0).is_some() && self.program_of(step.0) == at.program;
         if !own || self.scopes.expansion(step).is_some() {
-            let what = "the time of a macro-step or of a step in another program has no form there";
-            self.lost(span, what);
-            return nodes::time(Nanos::ZERO, span);
+            return self.clock(step, span);
         }
         self.step_member(step, "T", span)
     }
 
     /// `Fill.X` or `Fill.T`, for which `Fill` has to mean the step alone.
-    fn step_member(&mut self, step: StepKey, member: &str, span: Span) -> Expr {
+    pub(super) fn step_member(&mut self, step: StepKey, member: &str, span: Span) -> Expr {
         if self.names.is_twin(step) {
             self.read_twins.insert(step);
         }

@@ -39,6 +39,16 @@ pub(super) struct Lower<'d> {
     pub(super) scan: Option<Nanos>,
     /// True if bodies run once more after their step is left.
     pub(super) final_scan: bool,
+    /// True if step times count scans.
+    pub(super) scan_clock: bool,
+    /// The variables that change behind the conditions of actions: actions or bodies of charts write them.
+    pub(super) moved: HashSet<VarKey<'d>>,
+    /// The copies of such variables that conditions read.
+    pub(super) copies: BTreeMap<VarKey<'d>, String>,
+    /// The counted time of each step, in scans or (true) in seconds.
+    pub(super) counts: BTreeMap<(StepKey, bool), String>,
+    /// The time of each macro-step, or step of another program, that is read.
+    pub(super) clocks: BTreeMap<StepKey, String>,
     /// Variables of charts that are known to be used by other programs.
     pub(super) shared: HashSet<VarKey<'d>>,
     /// Variables of charts that turned out to be used by other programs.
@@ -58,6 +68,7 @@ pub(super) struct Lower<'d> {
     pub(super) mirrors: BTreeMap<StepKey, String>,
     pub(super) watches: Vec<Watch>,
     pub(super) started: Option<String>,
+    pub(super) first: Option<String>,
     /// Statements before all others that read inverted channels.
     pub(super) channels: Vec<Stmt>,
     /// Statements before the charts that compute edges and delays.
@@ -124,6 +135,11 @@ impl<'d> Lower<'d> {
             owners: HashMap::new(),
             scan: document.cycle(),
             final_scan: final_scan(document),
+            scan_clock: scan_clock(document),
+            moved: HashSet::new(),
+            copies: BTreeMap::new(),
+            counts: BTreeMap::new(),
+            clocks: BTreeMap::new(),
             shared,
             wanted: HashSet::new(),
             read_twins,
@@ -135,6 +151,7 @@ impl<'d> Lower<'d> {
             mirrors: BTreeMap::new(),
             watches: Vec::new(),
             started: None,
+            first: None,
             channels: Vec::new(),
             looking: Vec::new(),
             closing: Vec::new(),
@@ -153,6 +170,7 @@ impl<'d> Lower<'d> {
         lower.name();
         lower.driven_by = lower.drives();
         lower.uses = lower.used();
+        lower.moved = lower.moving();
         lower
     }
 
@@ -316,7 +334,7 @@ impl<'d> Lower<'d> {
             self.other_rules(profile.at.0, profile.name);
         }
         for (switch, at) in &profile.switches {
-            if !matches!(switch, Switch::FinalScan(_) | Switch::Bound(_)) {
+            if !matches!(switch, Switch::FinalScan(_) | Switch::ScanClock(_) | Switch::Bound(_)) {
                 let what = "this switch is not carried over; there the rules of the standard hold";
                 self.differs(at.0, what);
             }
@@ -357,8 +375,19 @@ impl<'d> Lower<'d> {
 
 /// True if bodies run once more after their step is left.
 fn final_scan(document: &Document) -> bool {
+    let of = |s: &Switch| if let Switch::FinalScan(on) = s { Some(*on) } else { None };
+    rule(document, of, ProfileName::Iec61131)
+}
+
+/// True if step times count scans.
+fn scan_clock(document: &Document) -> bool {
+    let of = |s: &Switch| if let Switch::ScanClock(on) = s { Some(*on) } else { None };
+    rule(document, of, ProfileName::Jgrafchart)
+}
+
+/// A rule by the last switch for it, else by the profile that has it.
+fn rule(document: &Document, of: impl Fn(&Switch) -> Option<bool>, usual: ProfileName) -> bool {
     let switches = document.profile().map(|p| p.switches.as_slice()).unwrap_or(&[]);
-    let set =
-        switches.iter().rev().find_map(|(s, _)| if let Switch::FinalScan(on) = s { Some(*on) } else { None });
-    set.unwrap_or(document.profile().is_some_and(|p| p.name == ProfileName::Iec61131))
+    let set = switches.iter().rev().find_map(|(s, _)| of(s));
+    set.unwrap_or(document.profile().is_some_and(|p| p.name == usual))
 }

@@ -20,6 +20,7 @@
 mod actions;
 mod assemble;
 mod bodies;
+mod counts;
 mod identifiers;
 mod lower;
 mod macros;
@@ -32,6 +33,7 @@ use g7_model::{Document, Problem};
 
 use crate::signs;
 
+pub(crate) use counts::LONGEST;
 pub(crate) use lower::Form;
 use lower::Lower;
 

@@ -19,6 +19,8 @@ pub(super) enum Ref<'d> {
     Member(VarKey<'d>, &'static str),
     Active(StepKey),
     Time(StepKey),
+    /// The time of a step in seconds, a REAL, where step times count scans.
+    Seconds(StepKey),
     Section(Option<usize>, &'d Section),
     Action(Option<usize>, &'d NamedAction),
 }
@@ -214,6 +216,7 @@ impl<'d> Scopes<'d> {
             match &*second.text {
                 "X" | "x" if by_name.is_some() => return Some(Ref::Active(step)),
                 "T" | "t" => return Some(Ref::Time(step)),
+                "s" => return Some(Ref::Seconds(step)),
                 _ => {}
             }
         }

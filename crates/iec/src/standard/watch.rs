@@ -15,7 +15,7 @@ impl<'d> Lower<'d> {
         if !self.can_watch(span, at, "an edge") {
             return nodes::boolean(false, span);
         }
-        let value = self.expr(e, &At { program: None, ..at.clone() });
+        let value = self.expr(e, &At { program: None, condition: false, ..at.clone() });
         if let Some(known) = self.known(&WatchKind::Edge(rise), &value) {
             return nodes::name(&[&known], span);
         }
@@ -42,7 +42,7 @@ impl<'d> Lower<'d> {
             let own = self.program_of(step.0).is_some() && self.program_of(step.0) == at.program;
             if own && self.scopes.expansion(step).is_none() {
                 let active = self.active(step, span, at, 0);
-                let time = self.time_of(step, span, at);
+                let time = self.step_member(step, "T", span);
                 let t1 = self.expr(t1, at);
                 let over = nodes::binary(g7_model::BinaryOp::Ge, time, t1, span);
                 return nodes::and(active, over, span);
@@ -52,7 +52,7 @@ impl<'d> Lower<'d> {
         if !self.can_watch(span, at, "a time operator") {
             return nodes::boolean(false, span);
         }
-        let file = At { program: None, ..at.clone() };
+        let file = At { program: None, condition: false, ..at.clone() };
         let value = self.expr(e, &file);
         let kind = WatchKind::Delay(self.expr(t1, &file), t2.map(|t| self.expr(t, &file)));
         // After the evolution the step may have been left.
@@ -104,7 +104,7 @@ impl<'d> Lower<'d> {
         self.watches.iter().find(|w| w.kind == *kind && w.value == *value).map(|w| w.name.clone())
     }
 
-    fn can_watch(&mut self, span: Span, at: &At, what: &str) -> bool {
+    pub(super) fn can_watch(&mut self, span: Span, at: &At, what: &str) -> bool {
         let slow = at.chart.and_then(|c| self.scopes.chart(c)).is_some_and(|c| self.pace(c).is_some());
         if at.function {
             self.lost(span, &format!("{what} in a function"));
@@ -115,12 +115,25 @@ impl<'d> Lower<'d> {
     }
 
     /// A variable that is FALSE in the first scan.
-    fn started(&mut self, span: Span) -> String {
+    pub(super) fn started(&mut self, span: Span) -> String {
         if let Some(name) = &self.started {
             return name.clone();
         }
         let name = self.fresh(None, "Started", Type::Bool, span);
         self.started = Some(name.clone());
+        name
+    }
+
+    /// A variable that is TRUE in the first scan until the charts have evolved.
+    pub(super) fn first(&mut self, span: Span) -> String {
+        if let Some(name) = &self.first {
+            return name.clone();
+        }
+        let name = self.fresh(None, "First", Type::Bool, span);
+        if let Some(decl) = self.new_globals.last_mut() {
+            decl.init = Some(nodes::boolean(true, span));
+        }
+        self.first = Some(name.clone());
         name
     }
 
@@ -131,11 +144,6 @@ impl<'d> Lower<'d> {
         }
         let wish = format!("{}_active", self.names.step(step));
         let name = self.fresh(None, &wish, Type::Bool, span);
-        if self.scopes.step(step).is_some_and(|s| s.initial)
-            && let Some(decl) = self.new_globals.last_mut()
-        {
-            decl.init = Some(nodes::boolean(true, span));
-        }
         self.mirrors.insert(step, name.clone());
         name
     }

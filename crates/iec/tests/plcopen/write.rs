@@ -180,10 +180,12 @@ fn charts_share_variables_and_steps() {
          chart Three { initial step `1` }",
         "var n : INT
          var own : INT
-         var Step1_active : BOOL := TRUE
+         var Step1_active : BOOL
+         var First : BOOL := TRUE
+         post { First := FALSE }
          var S4_active : BOOL
          chart One { initial step S1 { P1 n := own }  step S2  S1 -> S2 when S4_active }
-         chart Two { initial step S3  step S4 { N n := 0  N S4_active }  S3 -> S4 when Step1_active }
+         chart Two { initial step S3  step S4 { N n := 0  N S4_active }  S3 -> S4 when Step1_active or First }
          chart Three { initial step Step1 { N Step1_active } }",
     );
 }

@@ -11,17 +11,20 @@
 //! active: the control block of each variable, then the bodies in the order of the text.
 //!
 //! matiec also takes a step off as soon as one of several transitions behind it clears, and transitions after
-//! it see that; nor may a transition read a step that stands after it. They read a memory of the step instead.
+//! it see that; nor may a transition read a step that stands after it. They read a memory of the step instead, and of
+//! its time a clock that runs before the chart as well (`clocks.rs`).
 
 use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    Action, ActionKind, BinaryOp, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, FbKind, Item,
+    Action, ActionKind, BinaryOp, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, FbKind, Item,
     Literal, Name, NamedAction, Nanos, Path, Problem, Qualifier, Span, Step, Stmt, StmtKind, Target, Type,
     VarDecl, VarKind, codes,
 };
 
+use super::clocks::{Clocks, outputs_apart};
+use super::never::{never, seconds};
 use crate::nodes::{self, Taken};
 
 /// Moves the actions that matiec treats otherwise than the standard into one body of each chart.
@@ -29,14 +32,22 @@ pub(super) fn control(mut document: Document, problems: &mut Vec<Problem>) -> Do
     let mut taken = names(&document);
     let written = written(&document);
     let (variables, given) = (variables(&document, |_| true), variables(&document, |v| v.init.is_some()));
+    seconds(&mut document, problems);
+    let mut clocks = Clocks::default();
     for item in &mut document.items {
-        if let Item::Chart(chart) = item
-            && chart.kind == ChartKind::Chart
-        {
-            Control { taken: &mut taken, written: &written, given: &given, problems, vars: Vec::new() }
-                .chart(chart, &variables);
+        match item {
+            Item::Chart(chart) if chart.kind == ChartKind::Chart => {
+                let (taken, vars) = (&mut taken, Vec::new());
+                Control { taken, written: &written, given: &given, problems, vars, clocks: &mut clocks }
+                    .chart(chart, &variables);
+            }
+            Item::Pre(Body::St(block), _) | Item::Post(Body::St(block), _) => {
+                outputs_apart(&mut block.statements);
+            }
+            _ => {}
         }
     }
+    clocks.into_document(&mut document);
     document
 }
 
@@ -51,7 +62,7 @@ struct Drive {
 }
 
 /// A body with the actions that run it.
-struct Body {
+struct Work {
     name: String,
     list: Vec<Stmt>,
     drives: Vec<Drive>,
@@ -66,11 +77,13 @@ struct Control<'c> {
     problems: &'c mut Vec<Problem>,
     /// The new variables of the chart.
     vars: Vec<ChartItem>,
+    clocks: &'c mut Clocks,
 }
 
 impl Control<'_> {
     fn chart(mut self, chart: &mut Chart, variables: &HashSet<String>) {
         let at = chart.name.at.0;
+        never(chart, self.problems);
         self.apart(chart, variables);
         let named: HashMap<String, NamedAction> = chart
             .items
@@ -80,7 +93,7 @@ impl Control<'_> {
             })
             .collect();
         let (mut order, mut driven) = (Vec::new(), HashMap::<String, (Expr, Vec<Drive>)>::new());
-        let mut bodies: Vec<Body> = Vec::new();
+        let mut bodies: Vec<Work> = Vec::new();
         let mut places: HashMap<String, usize> = HashMap::new();
         for step in chart.steps() {
             for (number, action) in step.actions.iter().enumerate() {
@@ -91,7 +104,7 @@ impl Control<'_> {
                             let place = *places.entry(key(&path.text())).or_insert(bodies.len());
                             if place == bodies.len() {
                                 let list = action.body.block().statements.clone();
-                                bodies.push(Body { name: path.text(), list, drives: Vec::new() });
+                                bodies.push(Work { name: path.text(), list, drives: Vec::new() });
                             }
                             bodies.iter_mut().skip(place).take(1).for_each(|b| b.drives.push(drive.clone()));
                         }
@@ -113,7 +126,7 @@ impl Control<'_> {
                         });
                         list.push(drive);
                     }
-                    Target::Work(work) => bodies.push(Body {
+                    Target::Work(work) => bodies.push(Work {
                         name: format!("{}_{}", step.name.text, number + 1),
                         list: work.statements().to_vec(),
                         drives: vec![drive],
@@ -137,6 +150,7 @@ impl Control<'_> {
         if list.is_empty() {
             return;
         }
+        outputs_apart(&mut list);
         chart.items.retain(|i| !matches!(i, ChartItem::Action(_)));
         for step in
             chart.items.iter_mut().filter_map(|i| if let ChartItem::Step(s) = i { Some(s) } else { None })
@@ -158,11 +172,13 @@ impl Control<'_> {
         chart.items.push(ChartItem::Step(step));
     }
 
-    /// Gives a step that has the name of a variable another one, because its activity is read now.
+    /// Gives a step that has the name of a variable another one, because its activity is read now, and one that has
+    /// the name of the program, which matiec cannot tell apart in its C.
     fn apart(&mut self, chart: &mut Chart, variables: &HashSet<String>) {
         let title = chart.name.text.clone();
         let mut new: HashMap<String, String> = HashMap::new();
-        for step in chart.steps().filter(|s| variables.contains(&key(&s.name.text))) {
+        let twin = |name: &str| variables.contains(&key(name)) || key(name) == key(&title);
+        for step in chart.steps().filter(|s| twin(&s.name.text)) {
             let name = self.taken.give(&format!("{title}_{}", step.name.text));
             let what = format!("`{}` is called `{name}` there", step.name.text);
             self.problems.push(Problem::new(&codes::RENAMED, step.name.at.0, what));
@@ -216,7 +232,7 @@ impl Control<'_> {
     }
 
     /// A body runs while its block is on, and once more when it is over.
-    fn body(&mut self, body: &Body, list: &mut Vec<Stmt>) {
+    fn body(&mut self, body: &Work, list: &mut Vec<Stmt>) {
         let at = body.drives.first().map_or(Span::default(), |d| d.at);
         if let Some(end) = returns(&body.list) {
             let what = "RETURN in a body: it would end the other actions there as well";
@@ -367,8 +383,12 @@ impl Control<'_> {
     /// Gives a memory to each step that other transitions read than those behind it alone: these may read it
     /// before its place in the text, or after another transition has taken it off.
     fn early(&mut self, chart: &mut Chart, list: &mut Vec<Stmt>) {
-        let mut reader = Reader { own: None, read: HashSet::new(), memories: HashMap::new() };
+        let mut reader = Reader::default();
         receptivities(chart, &mut reader);
+        for step in chart.steps().filter(|s| reader.timed.contains(&key(&s.name.text))) {
+            let time = self.clocks.of_step(step, self.taken, list);
+            reader.times.insert(key(&step.name.text), time);
+        }
         for step in chart.steps().filter(|s| reader.read.contains(&key(&s.name.text))) {
             let at = step.name.at.0;
             let memory = self.fresh(&format!("{}_before", step.name.text), Type::Bool, step.initial, at);
@@ -431,11 +451,15 @@ fn returns(list: &[Stmt]) -> Option<Span> {
 }
 
 /// Finds the steps whose activity is read, and puts their memories in the place.
+#[derive(Default)]
 struct Reader {
     /// The only step before the transition, which may read it as it is.
     own: Option<String>,
     read: HashSet<String>,
     memories: HashMap<String, Expr>,
+    /// Steps whose time is read, and what stands for it.
+    timed: HashSet<String>,
+    times: HashMap<String, Expr>,
 }
 
 impl Visitor for Reader {
@@ -443,13 +467,18 @@ impl Visitor for Reader {
         let ExprKind::Path(path) = &e.kind else { return };
         let [step, member] = path.names.as_slice() else { return };
         let step = key(&step.text);
-        if key(&member.text) != "X" || self.own.as_ref() == Some(&step) {
+        if self.own.as_ref() == Some(&step) {
             return;
         }
-        if let Some(memory) = self.memories.get(&step) {
+        let (memories, read) = match &*key(&member.text) {
+            "X" => (&self.memories, &mut self.read),
+            "T" => (&self.times, &mut self.timed),
+            _ => return,
+        };
+        if let Some(memory) = memories.get(&step) {
             *e = memory.clone();
         }
-        self.read.insert(step);
+        read.insert(step);
     }
 }
 

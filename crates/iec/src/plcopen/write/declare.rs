@@ -75,15 +75,23 @@ fn variable(decl: &VarDecl, name: &Name) -> Element {
     element
 }
 
-/// The variables of the file, as a program refers to them.
-pub(super) fn external<'v>(variables: impl Iterator<Item = &'v VarDecl>) -> Option<Element> {
-    let mut list = Element::new("externalVars");
-    let mut some = false;
-    for decl in variables {
-        for name in &decl.names {
-            some = true;
-            list.push(Element::new("variable").with("name", &name.text).child(type_of(decl.ty)));
-        }
-    }
-    some.then_some(list)
+/// The variables of the file, as a program refers to them: those that change, and the constants, which stay
+/// constants there.
+pub(super) fn external<'v>(variables: impl Iterator<Item = &'v VarDecl> + Clone) -> Vec<Element> {
+    let is_constant = |decl: &VarDecl| decl.kind == VarKind::Const;
+    [false, true]
+        .into_iter()
+        .filter_map(|constant| {
+            let of_kind = variables.clone().filter(|v| is_constant(v) == constant);
+            let list: Vec<Element> = of_kind
+                .flat_map(|decl| decl.names.iter().map(move |n| (n, decl.ty)))
+                .map(|(name, ty)| Element::new("variable").with("name", &name.text).child(type_of(ty)))
+                .collect();
+            let mut element = Element::new("externalVars");
+            if constant {
+                element = element.with("constant", true);
+            }
+            (!list.is_empty()).then(|| element.children(list))
+        })
+        .collect()
 }

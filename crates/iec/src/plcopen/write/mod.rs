@@ -5,8 +5,10 @@
 //! and behind the charts become programs in Structured Text, whose place in the
 //! task says when they run.
 
+mod clocks;
 mod control;
 mod declare;
+mod never;
 mod place;
 mod project;
 mod sfc;

@@ -1,0 +1,86 @@
+//! Steps that can never be active, and conversions of times, where Beremiz or OpenPLC make text for matiec.
+//!
+//! `control.rs` begins with both. The generators write what they find behind the initial steps. A step that no chain
+//! of transitions reaches is missing in their text, though a transition names it. So it is left out here, with the
+//! transitions behind it, which never clear.
+
+use std::collections::HashSet;
+
+use g7_model::visit_mut::{self, Visitor};
+use g7_model::{Chart, ChartItem, Document, Expr, ExprKind, Item, Nanos, Problem, Transition, codes};
+
+use crate::nodes;
+
+/// Leaves out the steps that no transition can reach, and the transitions behind them.
+pub(super) fn never(chart: &mut Chart, problems: &mut Vec<Problem>) {
+    let mut reached: HashSet<String> =
+        chart.steps().filter(|s| s.initial).map(|s| s.name.text.to_string()).collect();
+    loop {
+        let known = reached.len();
+        for transition in chart.transitions() {
+            if clears(transition, &reached) {
+                reached.extend(transition.to.iter().map(|n| n.text.to_string()));
+            }
+        }
+        if reached.len() == known {
+            break;
+        }
+    }
+    let mut gone = Gone(HashSet::new());
+    for step in chart.steps().filter(|s| !reached.contains(&*s.name.text)) {
+        gone.0.insert(step.name.text.to_ascii_uppercase());
+        let what = format!("step `{}`, which no transition can reach, and what is behind it", step.name.text);
+        problems.push(Problem::new(&codes::LEFT_OUT, step.name.at.0, what));
+    }
+    if gone.0.is_empty() {
+        return;
+    }
+    chart.items.retain(|item| match item {
+        ChartItem::Step(step) => reached.contains(&*step.name.text),
+        ChartItem::Transition(transition) => clears(transition, &reached),
+        _ => true,
+    });
+    let mut alone = Document { items: vec![Item::Chart(chart.clone())], notes: Vec::new() };
+    visit_mut::document(&mut alone, &mut gone);
+    if let Some(Item::Chart(without)) = alone.items.pop() {
+        *chart = without;
+    }
+}
+
+fn clears(transition: &Transition, reached: &HashSet<String>) -> bool {
+    transition.from.iter().all(|n| reached.contains(&*n.text))
+}
+
+/// Puts FALSE and no time in the place of `Fill.X` and `Fill.T` of steps that are left out.
+struct Gone(HashSet<String>);
+
+impl Visitor for Gone {
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Path(path) = &e.kind else { return };
+        let [step, member] = path.names.as_slice() else { return };
+        if !self.0.contains(&step.text.to_ascii_uppercase()) {
+            return;
+        }
+        match &*member.text.to_ascii_uppercase() {
+            "X" => *e = nodes::boolean(false, e.at.0),
+            "T" => *e = nodes::time(Nanos::ZERO, e.at.0),
+            _ => {}
+        }
+    }
+}
+
+/// Tells of conversions between times and numbers, which count milliseconds here and seconds in matiec.
+pub(super) fn seconds(document: &mut Document, problems: &mut Vec<Problem>) {
+    struct Conversions<'p>(&'p mut Vec<Problem>);
+    impl Visitor for Conversions<'_> {
+        fn expr(&mut self, e: &mut Expr) {
+            let ExprKind::Call(path, _) = &e.kind else { return };
+            let name = path.text().to_ascii_uppercase();
+            if (name.starts_with("TIME_TO_") || name.ends_with("_TO_TIME")) && !name.contains("STRING") {
+                let what = format!("{name} counts in seconds there, and in milliseconds here");
+                self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
+            }
+        }
+    }
+    visit_mut::document(document, &mut Conversions(problems));
+}

@@ -1,0 +1,165 @@
+//! Values that a program before the charts brings up to date: step times that count scans, and what the
+//! conditions of actions read.
+//!
+//! `bodies.rs` asks for them; `assemble.rs` puts the statements into the program.
+
+use std::collections::HashSet;
+
+use g7_model::visit_mut::{self, Use, Visitor};
+use g7_model::{
+    ActionKind, BinaryOp, ChartItem, Expr, ExprKind, FbKind, Item, Literal, Nanos, Path, Span, Stmt, Target,
+    Type, Work,
+};
+
+use super::bodies::At;
+use super::lower::Lower;
+use super::scopes::{Ref, StepKey, VarKey};
+use crate::nodes;
+
+/// The most that a step time counts, which is an INT, and the most scans that are counted for its seconds.
+const MOST: [i128; 2] = [32_767, 2_147_483_647];
+
+/// No step is active for longer, as far as blocks that count its time can tell: some 27 years.
+pub(crate) const LONGEST: Nanos = Nanos::from_millis(10_000 * 86_400_000);
+
+impl<'d> Lower<'d> {
+    /// The time of a step where it counts scans: `Fill.t`, an INT, or `Fill.s`, a REAL. A counter goes up before the
+    /// charts evolve while the step is active; in the scan of the activation it is 0.
+    pub(super) fn counted(&mut self, step: StepKey, seconds: bool, span: Span, at: &At<'d>) -> Expr {
+        if let Some(known) = self.counts.get(&(step, seconds)) {
+            return nodes::name(&[known], span);
+        }
+        if !self.can_watch(span, at, "a step time") {
+            return nodes::int(0, span);
+        }
+        let own = self.names.step(step).to_string();
+        let active = self.active(step, span, &At::default(), 0);
+        let started = self.started(span);
+        let on = nodes::and(active, nodes::name(&[&started], span), span);
+        let ty = if seconds { Type::Dint } else { Type::Int };
+        let counter = self.fresh(None, &format!("{own}_scans"), ty, span);
+        let scans = nodes::name(&[&counter], span);
+        let [of_int, of_dint] = MOST;
+        let most = nodes::int(if seconds { of_dint } else { of_int }, span);
+        let more = nodes::binary(BinaryOp::Add, scans.clone(), nodes::int(1, span), span);
+        let goes_on = nodes::binary(BinaryOp::Lt, scans.clone(), most, span);
+        let count = nodes::when(goes_on, vec![nodes::assign(scans.clone(), more, span)], Vec::new(), span);
+        let none = nodes::assign(scans.clone(), nodes::int(0, span), span);
+        self.looking.push(nodes::when(on, vec![count], vec![none], span));
+        let mut name = counter;
+        if seconds {
+            let cycle = self.document.cycle().unwrap_or(Nanos::from_millis(10)).count();
+            let real = |text: String| {
+                nodes::expr(ExprKind::Literal(Literal::Real(text.into(), Some(Type::Lreal))), span)
+            };
+            let scans = nodes::call("DINT_TO_LREAL", vec![scans], span);
+            let nanos = nodes::binary(BinaryOp::Mul, scans, real(format!("{cycle}.0")), span);
+            let value = nodes::binary(BinaryOp::Div, nanos, real("1000000000.0".into()), span);
+            name = self.fresh(None, &format!("{own}_seconds"), Type::Real, span);
+            let value = nodes::call("LREAL_TO_REAL", vec![value], span);
+            self.looking.push(nodes::assign(nodes::name(&[&name], span), value, span));
+        }
+        let value = nodes::name(&[&name], span);
+        self.counts.insert((step, seconds), name);
+        value
+    }
+
+    /// The time of a macro-step, or of a step in another program. A block counts it, called behind the charts, where
+    /// the step begins, and before them, so that the time is that of the scan.
+    pub(super) fn clock(&mut self, step: StepKey, span: Span) -> Expr {
+        if let Some(known) = self.clocks.get(&step) {
+            return nodes::name(&[known], span);
+        }
+        let own = self.names.step(step).to_string();
+        let active = self.active(step, span, &At::default(), 0);
+        let clock = self.fresh(None, &format!("{own}_clock"), Type::Fb(FbKind::Ton), span);
+        let time = self.fresh(None, &format!("{own}_time"), Type::Time, span);
+        let inputs = vec![("IN", active.clone()), ("PT", nodes::time(LONGEST, span))];
+        let call = nodes::invoke(nodes::path(&[&clock], span), inputs, span);
+        self.closing.push(call.clone());
+        self.looking.push(call);
+        // A step that has ended keeps its time.
+        let value = nodes::name(&[&time], span);
+        let now = nodes::assign(value.clone(), nodes::name(&[&clock, "ET"], span), span);
+        self.looking.push(nodes::when(active, vec![now], Vec::new(), span));
+        self.clocks.insert(step, time);
+        value
+    }
+
+    /// A variable as it was before the actions and bodies of the scan.
+    pub(super) fn copy(&mut self, key: VarKey<'d>, span: Span) -> Expr {
+        if let Some(known) = self.copies.get(&key) {
+            return nodes::name(&[known], span);
+        }
+        let Some(ty) = self.scopes.decl(key).map(|d| d.ty) else { return nodes::bad(span) };
+        // The copy is made by a program of its own, so the variable becomes one of the file.
+        if key.0.is_some() {
+            self.wanted.insert(key);
+        }
+        let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
+        let name = self.fresh(None, &format!("{own}_before"), ty, span);
+        self.copies.insert(key, name.clone());
+        nodes::name(&[&name], span)
+    }
+
+    /// The statements that make the copies.
+    pub(super) fn copied(&self, body: &mut Vec<Stmt>) {
+        let at = Span::default();
+        for (key, name) in &self.copies {
+            let own = self.names.var(key.0, key.1).unwrap_or(key.1);
+            body.push(nodes::assign(nodes::name(&[name], at), nodes::name(&[own], at), at));
+        }
+    }
+
+    /// The variables that actions drive or bodies of charts write.
+    pub(super) fn moving(&self) -> HashSet<VarKey<'d>> {
+        struct Writes(Vec<Path>);
+        impl Visitor for Writes {
+            fn path(&mut self, path: &mut Path, how: Use, _at: Span) {
+                if how == Use::Write {
+                    self.0.push(path.clone());
+                }
+            }
+        }
+        let mut all: HashSet<VarKey> = self.driven_by.keys().copied().collect();
+        let mut file = Writes(Vec::new());
+        for item in &self.document.items {
+            if let Item::Action(a) = item {
+                visit_mut::stmts(&mut a.body.block().statements.clone(), &mut file);
+            }
+        }
+        let mut written: Vec<(Option<usize>, Path)> = file.0.into_iter().map(|p| (None, p)).collect();
+        for (number, chart) in self.scopes.charts.iter().enumerate() {
+            let mut own = Writes(Vec::new());
+            for item in &chart.items {
+                match item {
+                    ChartItem::Action(a) => {
+                        visit_mut::stmts(&mut a.body.block().statements.clone(), &mut own);
+                    }
+                    ChartItem::Step(step) => {
+                        for action in &step.actions {
+                            let work = match &action.kind {
+                                ActionKind::Qualified { target: Target::Work(work), .. }
+                                | ActionKind::EachScan { work, .. } => work,
+                                _ => continue,
+                            };
+                            visit_mut::stmts(&mut statements(work), &mut own);
+                        }
+                    }
+                    _ => {}
+                }
+            }
+            written.extend(own.0.into_iter().map(|p| (Some(number), p)));
+        }
+        for (chart, path) in written {
+            if let Some(Ref::Var(key)) = self.scopes.refer(chart, &path.names) {
+                all.insert(key);
+            }
+        }
+        all
+    }
+}
+
+fn statements(work: &Work) -> Vec<Stmt> {
+    work.statements().to_vec()
+}
