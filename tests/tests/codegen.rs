@@ -224,3 +224,66 @@ chart C {
     agree("clock", "gcc", Style::Structured, &all);
     agree("clock", "rustc", Style::Structured, &all);
 }
+
+/// Lints that are allowed at the head of a printed file.
+fn allowed(text: &str) -> Vec<String> {
+    let names = text.split_once("#![allow(\n").and_then(|(_, r)| r.split_once(")]")).map_or("", |(n, _)| n);
+    names.split(',').map(|n| n.trim().trim_start_matches("clippy::").to_owned()).collect()
+}
+
+/// The messages of clippy about modules of one crate, with its pedantic lints.
+fn clippy(folder: &Folder, modules: &[String]) -> std::process::Output {
+    let mut root = String::from("//! Charts.\n#![no_std]\n");
+    std::fs::create_dir_all(&folder.0).expect("a folder");
+    for (i, text) in modules.iter().enumerate() {
+        std::fs::write(folder.0.join(format!("c{i}.rs")), text).expect("a file");
+        root += &format!("pub mod c{i};\n");
+    }
+    std::fs::write(folder.0.join("lib.rs"), root).expect("a file");
+    let lints = ["-Dwarnings", "-Wclippy::all", "-Wclippy::pedantic"];
+    std::process::Command::new("clippy-driver")
+        .args(["--edition=2024", "--crate-type=lib", "--emit=metadata", "--cap-lints=forbid", "lib.rs"])
+        .args(lints)
+        .current_dir(&folder.0)
+        .output()
+        .expect("clippy starts")
+}
+
+/// Printed Rust is clean under the pedantic lints of clippy but for those at its head, and each of these is needed.
+#[test]
+fn printed_rust_is_clean_by_clippy() {
+    if !g7_peers::tool("clippy-driver") {
+        return;
+    }
+    let mut subjects = spec();
+    subjects.extend(in_little_room(spec()).into_iter().step_by(9));
+    subjects.extend(random(ProfileName::Iec61131, 500, 100));
+    let texts: Vec<String> = some(&subjects, 0, 6)
+        .into_iter()
+        .enumerate()
+        .filter_map(|(i, s)| {
+            let style = if i % 3 == 2 && s.room == Room::default() { Style::Flat } else { Style::Structured };
+            let printed = s.print(Language::Rust, style, "c").ok().filter(|p| p.problems.is_empty())?;
+            printed.files.last().map(|f| f.text.clone())
+        })
+        .collect();
+    assert!(texts.len() > 40, "{} charts", texts.len());
+    let folder = Folder::new("clippy");
+    let out = clippy(&folder, &texts);
+    let said: String = String::from_utf8_lossy(&out.stderr).chars().take(6_000).collect();
+    assert!(out.status.success(), "{said}");
+    let names = allowed(&texts[0]);
+    let bare: Vec<String> = texts
+        .iter()
+        .map(|t| {
+            let (above, rest) = t.split_once("#![allow(\n").expect("the lints");
+            format!("{above}{}", rest.split_once(")]").expect("their end").1)
+        })
+        .collect();
+    let out = clippy(&folder, &bare);
+    let said = String::from_utf8_lossy(&out.stderr);
+    let unneeded: Vec<&String> =
+        names.iter().filter(|n| !said.contains(&format!("index.html#{n}"))).collect();
+    assert!(unneeded.is_empty(), "allowed and never found: {unneeded:?}");
+    println!("{} charts, {} lints allowed", texts.len(), names.len());
+}

@@ -239,12 +239,13 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
             let head = format!(
                 "//! The chart `{name}`, printed by G7. Call [`init`] once, then [`scan`] in each cycle.\n{}#![forbid(unsafe_code)]\n\
                  // Writes of a chart that nothing reads stand as they are, and so do brackets.\n\
-                 #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n\n",
+                 #![allow(dead_code, unused_assignments, unused_mut, unused_parens)]\n{}\n",
                 if options.room.is_narrow() {
                     format!("//! {}\n", options.room.note())
                 } else {
                     String::new()
-                }
+                },
+                rust::ALLOWED
             );
             vec![File { name: format!("{name}.rs"), text: head + &rust::print(&module, &helpers.text) }]
         }

@@ -136,6 +136,27 @@ fn without_writes(body: &mut Vec<Stmt>, fields: &HashSet<String>) {
     });
 }
 
+/// Takes out a `return` behind which a function ends anyway.
+fn without_last_return(body: &mut Vec<Stmt>) {
+    loop {
+        match body.last_mut() {
+            Some(Stmt::Return(None)) => {}
+            Some(Stmt::If(c, a, b)) => {
+                without_last_return(a);
+                without_last_return(b);
+                if !(a.is_empty() && b.is_empty() && is_free(c)) {
+                    return;
+                }
+            }
+            Some(Stmt::Match(_, arms)) => {
+                return arms.iter_mut().for_each(|a| without_last_return(&mut a.body));
+            }
+            _ => return,
+        }
+        body.pop();
+    }
+}
+
 /// Leaves in a module only the items that its public functions reach.
 /// Tells the functions that are called and not there: those of the language's own part.
 pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
@@ -184,8 +205,8 @@ pub(crate) fn prune(m: &mut Module) -> BTreeSet<String> {
     }
     m.structs.retain(|s| used.contains(&s.name));
     for f in &mut m.functions {
-        while matches!(f.body.last(), Some(Stmt::Return(None))) {
-            f.body.pop();
+        if f.result.is_none() {
+            without_last_return(&mut f.body);
         }
     }
     order(m);

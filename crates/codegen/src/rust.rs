@@ -5,6 +5,19 @@ use std::fmt::Write as _;
 
 use crate::tree::{Arm, Bin, Block, Const, Expr, Function, Known, Module, Stmt, Struct, Ty, Un};
 
+/// Lints of clippy that printed code does not keep; the book says why.
+pub(crate) const ALLOWED: &str = "\
+#![allow(
+    clippy::cast_lossless, clippy::cast_possible_truncation, clippy::cast_precision_loss,
+    clippy::cast_sign_loss, clippy::collapsible_if, clippy::collapsible_match, clippy::doc_markdown,
+    clippy::float_cmp, clippy::many_single_char_names, clippy::match_same_arms,
+    clippy::needless_range_loop, clippy::nonminimal_bool, clippy::overly_complex_bool_expr,
+    clippy::similar_names, clippy::single_match, clippy::single_match_else,
+    clippy::struct_excessive_bools, clippy::too_many_lines, clippy::trivially_copy_pass_by_ref,
+    clippy::unnecessary_cast, clippy::unreadable_literal
+)]
+";
+
 /// Prints a module.
 pub(crate) fn print(m: &Module, helpers: &str) -> String {
     let mut p = Printer { out: String::new() };
@@ -72,7 +85,7 @@ impl Printer {
         }
         let _ = writeln!(
             self.out,
-            "}}\n\nimpl {0} {{\n    /// All zero and FALSE.\n    pub const fn new() -> {0} {{",
+            "}}\n\nimpl {0} {{\n    /// All zero and FALSE.\n    #[must_use]\n    pub const fn new() -> {0} {{",
             s.name
         );
         let _ = writeln!(self.out, "        {} {{", s.name);
@@ -134,6 +147,10 @@ impl Printer {
             .collect();
         let result = f.result.as_ref().map_or(String::new(), |t| format!(" -> {}", self.ty(t)));
         let open = if f.public { "pub " } else { "" };
+        let changes = f.parameters.iter().any(|(_, t)| matches!(t, Ty::Ref(true, _) | Ty::Slice(true, _)));
+        if f.public && f.result.is_some() && !changes {
+            self.out.push_str("#[must_use]\n");
+        }
         let _ = writeln!(self.out, "{open}fn {}({}){result} {{", f.name, parameters.join(", "));
         let body = f.body.as_slice();
         let (last, body) = match body.split_last() {
@@ -168,6 +185,10 @@ impl Printer {
                 };
                 let ty = self.ty(ty);
                 let _ = writeln!(self.out, "{indent}let {m}{name}: {ty} = {value};");
+            }
+            Stmt::Assign(None, to, Expr::Bin(op, a, b)) if **a == *to && op.has_assignment() => {
+                let (to, b) = (self.expr(to), self.expr(b));
+                let _ = writeln!(self.out, "{indent}{to} {}= {b};", op.text());
             }
             Stmt::Assign(op, to, value) => {
                 let (to, value) = (self.expr(to), self.expr(value));

@@ -86,6 +86,11 @@ impl Bin {
         }
     }
 
+    /// True for operators that an assignment can have.
+    pub(crate) fn has_assignment(self) -> bool {
+        !matches!(self, Bin::Eq | Bin::Ne | Bin::Lt | Bin::Le | Bin::Gt | Bin::Ge | Bin::And | Bin::Or)
+    }
+
     /// How tightly it binds in Rust, whose order its printer goes by.
     pub(crate) fn tightness(self) -> u8 {
         match self {

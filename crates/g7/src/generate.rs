@@ -324,6 +324,11 @@ enum Tongue {
 }
 
 impl Tongue {
+    /// True if a `main.c` stands beside the chart.
+    fn has_main(self) -> bool {
+        matches!(self, Tongue::Code(Form { project: Some(Project::Cmake), .. }))
+    }
+
     fn print(
         self,
         compiled: &g7_compile::Compiled,
@@ -423,6 +428,11 @@ fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
         Err(verdict) => return Ok(verdict),
     };
     let name = what.name.clone().unwrap_or_else(|| name_of(&path));
+    if tongue.has_main() && file_name(&name) == "main" {
+        return Err(Failure::Usage(
+            "main.c is the program round the chart: choose another --name".to_owned(),
+        ));
+    }
     match tongue.print(&compiled, &name, &source.text) {
         Ok(Written { files, problems, sizes }) => {
             if !problems.is_empty() {

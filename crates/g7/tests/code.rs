@@ -25,7 +25,8 @@ fn files_bear_the_name_of_the_folder_of_a_chart() {
     folder.write("tank/chart.g7", CHART);
     folder.g7(&["gen", "c", "tank", "-o", "out"]).is(0);
     assert!(folder.read("out/tank.h").contains("tank_scan("));
-    assert!(folder.read("out/tank.c").contains("#include \"tank.h\""));
+    assert!(folder.read("out/tank.c").contains("#include \"tank_run.h\""));
+    assert!(folder.read("out/tank.h").contains("#include \"g7.h\""));
     folder.g7(&["gen", "arduino", "tank", "-o", "sketch", "--name", "Mill"]).is(0);
     assert!(folder.read("sketch/mill.ino").contains("mill_scan_in_place("));
     folder.g7(&["gen", "rust", "tank", "-o", "src"]).is(0);
@@ -52,6 +53,44 @@ fn what_c_cannot_say_is_a_problem_and_nothing_is_written() {
     folder.write("chart.g7", CHART.replace("when a", "when nothing_has_this"));
     folder.g7(&["gen", "c", "-o", "out"]).is(1);
     assert_eq!(folder.names(), ["chart.g7"]);
+}
+
+#[test]
+fn charts_of_one_folder_share_what_they_have_in_common() {
+    let folder = Folder::new();
+    folder.write("tank/chart.g7", CHART);
+    folder.write("mill/chart.g7", CHART.replace("not a", "not a and 2s/X2"));
+    folder.g7(&["gen", "c", "tank", "-o", "out"]).is(0);
+    let ran = folder.g7(&["gen", "c", "mill", "-o", "out"]).is(0).err.clone();
+    assert!(ran.contains("mill.c") && !ran.contains("g7.c"), "{ran}");
+    folder.g7(&["gen", "c", "tank", "--style", "flat", "-o", "out"]).is(2);
+    // Another `g7.c` is not replaced without a word.
+    folder.write("out/g7.c", "mine");
+    folder.g7(&["gen", "c", "mill", "-o", "out"]).is(2);
+    assert_eq!(folder.read("out/g7.c"), "mine");
+    folder.g7(&["gen", "c", "tank", "--name", "g7", "-o", "new"]).is(1);
+    assert_eq!(folder.names(), ["mill", "out", "tank"]);
+}
+
+#[test]
+fn the_program_round_a_chart_is_never_written_over() {
+    let folder = Folder::new();
+    folder.write("tank/chart.g7", CHART);
+    for (args, own, file) in [
+        (&["c", "--project", "cmake"] as &[&str], "main.c", "tank.c"),
+        (&["rust", "--project", "cargo"], "src/main.rs", "src/tank.rs"),
+        (&["arduino"], "platformio.ini", "tank.c"),
+    ] {
+        let out = args[0];
+        let given = [&["gen"], args, &["tank", "-o", out]].concat();
+        folder.g7(&given).is(0);
+        let mine = format!("{out}/{own}");
+        folder.write(&mine, "mine");
+        folder.write(&format!("{out}/{file}"), "old");
+        folder.g7(&[&given[..], &["--force"]].concat()).is(0);
+        assert_eq!(folder.read(&mine), "mine");
+        assert_ne!(folder.read(&format!("{out}/{file}")), "old");
+    }
 }
 
 /// Every language and style: arguments, files in their order, a text that only this style contains.
@@ -87,9 +126,15 @@ fn every_language_and_style_goes_to_the_standard_output_and_to_files() {
         let out = folder.g7(&given).is(0).out.clone();
         assert!(out.contains(sign), "{args:?}: no `{sign}` in\n{out}");
         assert_eq!(folder.names(), ["tank"], "{args:?}: the standard output leaves no file");
-        folder.g7(&[&given[..], &["-o", "out"]].concat()).is(0);
+        let whole: &[&str] = if ["c", "arduino"].contains(&args[0]) { &["--whole"] } else { &[] };
+        folder.g7(&[&given[..], whole, &["-o", "out"]].concat()).is(0);
         let texts: Vec<String> = files.iter().map(|f| folder.read(&format!("out/{f}"))).collect();
-        assert_eq!(texts.join("\n"), out, "{args:?}: the files one behind the other");
+        let mut texts = texts.join("\n");
+        if args[0] == "c" {
+            // As one file it does not ask for the other.
+            texts = texts.replace("/* The chart tank, printed by G7. */\n#include \"tank.h\"\n", "");
+        }
+        assert_eq!(texts, out, "{args:?}: the files one behind the other");
         let count = std::fs::read_dir(folder.path("out")).expect("a folder").count();
         assert_eq!(count, files.len(), "{args:?}: these files and no other");
     }
@@ -108,6 +153,10 @@ fn what_is_no_language_and_no_style_is_refused() {
         (&["gen", "c", "--style", "flat", "--small"], "structured"),
         (&["gen", "c", "--board", "due"], "uno, mega, esp32"),
         (&["gen", "c", "--time-unit", "s"], "ms"),
+        (&["gen", "c", "--whole"], "--output"),
+        (&["gen", "rust", "--whole", "-o", "out"], "one file anyway"),
+        (&["gen", "rust", "--project", "cmake", "-o", "out"], "--project cargo"),
+        (&["gen", "c", "--project", "cmake", "--name", "main", "-o", "out"], "main.c"),
         (&["gen", "c", "nowhere.g7"], "nowhere.g7"),
         (&["gen", "c", "--profile", "iec"], "iec"),
     ] {
@@ -125,10 +174,13 @@ fn the_bead_sorter_compiles_without_a_warning() {
     for style in ["structured", "flat"] {
         let folder = Folder::new();
         folder.g7(&["gen", "c", chart, "--style", style, "--name", "sorter", "-o", "."]).is(0);
+        let one = folder.g7(&["gen", "c", chart, "--style", style, "--name", "sorter"]).is(0).out.clone();
+        folder.write("one.c", &one);
         for compiler in ["gcc", "clang"].into_iter().filter(|c| g7_peers::tool(c)) {
             let strict =
                 ["-std=c99", "-Wall", "-Wextra", "-Wconversion", "-pedantic", "-Werror", "-O2", "-c"];
-            let run = Command::new(compiler).args(strict).arg("sorter.c").current_dir(folder.root()).output();
+            let files = ["sorter.c", "g7.c", "one.c"];
+            let run = Command::new(compiler).args(strict).args(files).current_dir(folder.root()).output();
             let out = run.expect("the compiler starts");
             let said = String::from_utf8_lossy(&out.stderr);
             assert!(out.status.success() && said.is_empty(), "{compiler}, {style}:\n{said}");

@@ -142,12 +142,12 @@ pub fn text_replace(a: &[u8], b: &[u8], n: i64, at: i64, to: &mut [u8], most: us
 
 pub fn text_from_i64(v: i64, to: &mut [u8], most: usize) {
     let mut text = Text::new(to, most);
-    let _ = write!(text, "{}", v);
+    let _ = write!(text, "{v}");
 }
 
 pub fn text_from_u64(v: u64, to: &mut [u8], most: usize) {
     let mut text = Text::new(to, most);
-    let _ = write!(text, "{}", v);
+    let _ = write!(text, "{v}");
 }
 
 pub fn text_from_bool(v: bool, to: &mut [u8], most: usize) {
