@@ -181,6 +181,14 @@ const CHARTS: [(&str, &str); 12] = [
 ];
 
 /// One of the charts; those without a profile have that of the standard.
+/// All of them, and the conveyor that a story of the page draws (`web/tests/stories.test.ts`).
+fn charts() -> Vec<(&'static str, String)> {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../web/tests/drawn/conveyor.g7");
+    let drawn = std::fs::read_to_string(&file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    let charts = CHARTS.iter().map(|(name, text)| (*name, (*text).to_owned()));
+    charts.chain([("drawn in the page", format!("profile iec60848\n{drawn}"))]).collect()
+}
+
 fn chart(name: &str, text: &str) -> Document {
     let profile = if text.starts_with("profile") { "" } else { "profile iec61131\n" };
     let (document, problems) = g7_syntax::parse(&format!("{profile}{text}"), FileId(0));
@@ -192,7 +200,7 @@ fn chart(name: &str, text: &str) -> Document {
 #[test]
 fn projects_run_as_their_charts() {
     let plcopen = g7_exchange::named("plcopen").expect("a format of the table");
-    for (name, text) in CHARTS {
+    for (name, text) in &charts() {
         let document = chart(name, text);
         let before = g7_compile::compile(&document).0.expect("the chart is compiled");
         for dialect in Dialect::ALL {
@@ -224,7 +232,7 @@ fn beremiz_and_openplc_open_projects() {
     std::fs::create_dir_all(&folder.0).expect("a folder");
     let plcopen = g7_exchange::named("plcopen").expect("a format of the table");
     for reader in &readers {
-        for (name, text) in CHARTS {
+        for (name, text) in &charts() {
             let document = chart(name, text);
             let dialect = if reader.name == "OpenPLC" { Dialect::OpenPlc } else { Dialect::Beremiz };
             let written = plcopen.write_in(&document, dialect).expect("it has dialects");

@@ -1,9 +1,11 @@
 // A story without the mouse: the bottle conveyor is drawn from nothing, its names are declared by
 // the offered fixes, and it runs to five bottles.
 import assert from 'node:assert/strict';
+import { readFileSync } from 'node:fs';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Locator, Page } from 'playwright-core';
-import { browser, open, playground, until, type Site } from './lib';
+import { browser, open, playground, textOf, until, type Site } from './lib';
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
@@ -70,6 +72,9 @@ test('the bottle conveyor from nothing to five bottles, by keyboard alone', asyn
   await page.keyboard.press('Enter');
   await activate(page.getByRole('tab', { name: /Problems/ }));
   await page.getByText('No problems').waitFor();
+
+  // The chart that other programs open in the tests of exports.
+  assert.equal(await textOf(page), readFileSync(join(import.meta.dirname, 'drawn/conveyor.g7'), 'utf8'));
 
   const scan = page.getByRole('button', { name: 'One scan', exact: true });
   const signal = (name: string) => page.getByRole('switch', { name, exact: true });
