@@ -13,13 +13,15 @@ use g7_peers::projects::{output, readers};
 use g7_tests::generated::cases::Folder;
 use g7_tests::generated::project;
 
-/// Charts for which the generators need a form of their own: with chained divergences, jumps, macro-steps, two
-/// charts, addresses, function blocks, and one without variables; and what matiec does otherwise than the
-/// standard: several steps with one output, pulses of initial steps, bodies that run once more, `R` after `SD`,
-/// and steps that other charts read; and inverted channels and actions of macro-steps, which are rewritten; steps
-/// whose time another chart reads, conditions that read what actions drive, step times in scans, constants of
-/// several programs, and a block of the file that is called with an output; a step that nothing reaches, and one
-/// that is called like its program.
+/// Charts with what these tools need in a form of their own, or do otherwise than the standard:
+///
+/// - chained divergences, jumps, macro-steps, two charts, addresses, function blocks, no variables at all;
+/// - several steps with one output, pulses of initial steps, bodies that run once more, `R` after `SD`;
+/// - inverted channels and actions of macro-steps, which are rewritten;
+/// - a step, or the time of a step, that another chart reads; step times in scans;
+/// - conditions that read what actions drive;
+/// - constants of several programs, and a block of the file that is called with an output;
+/// - a step that nothing reaches, and a step that is called like its program.
 const CHARTS: [(&str, &str); 12] = [
     (
         "never",

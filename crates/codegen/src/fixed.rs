@@ -108,7 +108,7 @@ fn head(text: &str) -> Option<String> {
     Some(format!("{above};\n"))
 }
 
-/// The functions that know no chart, as a module of their own.
+/// The functions that are the same for every chart, as one module.
 fn module() -> Module {
     let (structs, functions) = runtime::of(&runtime::Facts::default());
     let mut functions: Vec<_> =

@@ -2,12 +2,12 @@
 
 use std::io::{Cursor, Read};
 
-/// The most bytes that an archive may unpack to.
+/// The greatest size of all unpacked files together, in bytes.
 const MOST: u64 = 1 << 30;
-/// The most files in it.
+/// The greatest number of files.
 const FILES: usize = 20_000;
 
-/// A file: its path with `/`, without `..`, and its bytes.
+/// A file of the archive: its path (folders are separated by `/`, and `..` does not occur) and its content.
 pub type File = (String, Vec<u8>);
 
 /// All files of an archive.

@@ -1,7 +1,7 @@
 //! `g7 gen fmu`: the files of `g7_codegen::fmu` compiled for this machine and packed as a zip archive.
 
 use std::io::{Cursor, Write};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
 use clap::Args;
@@ -11,6 +11,7 @@ use zip::write::SimpleFileOptions;
 
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
+use crate::scratch::Scratch;
 use crate::{files, style, values};
 
 /// Compilers that are tried if `CC` names none.
@@ -110,14 +111,14 @@ fn library(version: Version, made: &Files) -> Result<Option<(String, Vec<u8>)>, 
         );
         return Ok(None);
     };
-    let place = Place::new()?;
+    let scratch = Scratch::new()?;
     for file in made.files.iter().filter(|f| f.name.starts_with("sources/")) {
         let name = file.name.trim_start_matches("sources/");
-        files::write(&place.0.join(name), file.text.as_bytes())?;
+        files::write(&scratch.path().join(name), file.text.as_bytes())?;
     }
     let file = format!("{}{}", made.identifier, std::env::consts::DLL_SUFFIX);
     let mut command = Command::new(&compiler);
-    command.current_dir(&place.0).args(["-std=c99", "-O2", "-shared", "-fvisibility=hidden"]);
+    command.current_dir(scratch.path()).args(["-std=c99", "-O2", "-shared", "-fvisibility=hidden"]);
     if !cfg!(windows) {
         command.arg("-fPIC");
     }
@@ -134,7 +135,7 @@ fn library(version: Version, made: &Files) -> Result<Option<(String, Vec<u8>)>, 
             said.join("\n")
         )));
     }
-    let bytes = files::read(&place.0.join(&file))?;
+    let bytes = files::read(&scratch.path().join(&file))?;
     Ok(Some((format!("binaries/{folder}/{file}"), bytes)))
 }
 
@@ -149,26 +150,5 @@ fn compiler() -> Option<String> {
     match named {
         Some(named) => Some(named).filter(starts),
         None => COMPILERS.map(str::to_owned).into_iter().find(starts),
-    }
-}
-
-/// A folder to compile in, deleted at the end.
-struct Place(PathBuf);
-
-impl Place {
-    fn new() -> Result<Place, Failure> {
-        let mut bytes = [0; 8];
-        getrandom::fill(&mut bytes).map_err(|e| Failure::Usage(format!("no random numbers: {e}")))?;
-        let name = format!("g7-fmu-{:016x}", u64::from_le_bytes(bytes));
-        let folder: &Path = &std::env::temp_dir().join(name);
-        std::fs::create_dir(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
-        Ok(Place(folder.to_path_buf()))
-    }
-}
-
-impl Drop for Place {
-    fn drop(&mut self) {
-        // A folder that stays behind lies among other temporary files.
-        let _ = std::fs::remove_dir_all(&self.0);
     }
 }

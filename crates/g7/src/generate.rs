@@ -131,7 +131,8 @@ struct Code {
     /// Put what all charts have in common into the chart's own file, instead of `g7.h` and `g7.c`.
     #[arg(long, requires = "output")]
     whole: bool,
-    /// Add a program that calls the chart and the files of a build tool; they are yours and never written over.
+    /// Also write a program that calls the chart, and the files for a build tool. Change them as you like: later
+    /// calls leave them as they are.
     #[arg(long, value_enum, value_name = "TOOL", requires = "output", conflicts_with = "whole")]
     project: Option<Tool>,
     #[command(flatten)]

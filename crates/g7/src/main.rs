@@ -44,6 +44,7 @@ mod progress;
 mod prove;
 mod report;
 mod run;
+mod scratch;
 mod serve;
 #[cfg(target_os = "linux")]
 mod service;

@@ -42,7 +42,7 @@ pub struct Fmu {
 ///
 /// # Errors
 ///
-/// The constructs that C cannot say, with their places in the chart.
+/// The constructs that cannot be written in C, with their places in the chart.
 pub fn fmu(compiled: &Compiled, version: Version, name: &str, source: &str) -> Result<Fmu, Vec<Problem>> {
     let options =
         Options { language: Language::C, style: Style::Structured, room: Room::default(), name, source };

@@ -31,7 +31,8 @@ pub(crate) fn body(e: &Block, fault: &str) -> String {
     p.out
 }
 
-/// The sections of a function block that have variables, each with its head.
+/// The sections of variables of a function block: the first line of each (`VAR_INPUT` …), and its variables. A section
+/// without variables is left out.
 pub(crate) fn sections(variables: &[Declared]) -> impl Iterator<Item = (&'static str, Vec<&Declared>)> {
     let heads = [
         (Class::Input, "VAR_INPUT"),

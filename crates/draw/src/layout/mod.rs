@@ -23,6 +23,7 @@
 
 mod beside;
 mod graph;
+mod lines;
 mod moved;
 mod place;
 mod profile;

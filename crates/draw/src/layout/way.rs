@@ -3,6 +3,7 @@
 
 use std::collections::HashMap;
 
+use crate::layout::lines::Lines;
 use crate::layout::rooms::LINK;
 use crate::{Point, Rect};
 
@@ -23,32 +24,7 @@ const COLUMNS: [i32; 4] = [100, -100, 200, -200];
 pub(crate) struct Ways {
     boxes: Vec<(u32, Rect)>,
     cells: HashMap<(i32, i32), Vec<u32>>,
-    /// Upright pieces by column, level ones by row.
-    columns: HashMap<i32, Vec<Piece>>,
-    rows: HashMap<i32, Vec<Piece>>,
-}
-
-/// A piece of a link: from where to where, and the ends of the link.
-#[derive(Debug, Clone, Copy)]
-struct Piece {
-    low: i32,
-    high: i32,
-    ends: [u32; 2],
-}
-
-impl Piece {
-    /// The piece between two corners, with its column or row; `true` if it is upright.
-    fn of(a: Point, b: Point, ends: [u32; 2]) -> (bool, i32, Piece) {
-        let upright = a.x == b.x;
-        let (at, a, b) = if upright { (a.x, a.y, b.y) } else { (a.y, a.x, b.x) };
-        (upright, at, Piece { low: a.min(b), high: a.max(b), ends })
-    }
-
-    /// True if links that have no end in common lie on one another.
-    fn lies_on(&self, other: &Piece) -> bool {
-        let apart = self.ends[0] != other.ends[0] && self.ends[1] != other.ends[1];
-        apart && self.low.max(other.low) < self.high.min(other.high)
-    }
+    lines: Lines,
 }
 
 fn line(a: Point, b: Point) -> Rect {
@@ -71,26 +47,12 @@ impl Ways {
                 ys.clone().for_each(|y| map.entry((x, y)).or_default().push(n));
             }
         }
-        Ways { boxes, cells: map, columns: HashMap::new(), rows: HashMap::new() }
+        Ways { boxes, cells: map, lines: Lines::default() }
     }
 
     /// Links that are drawn later do not lie on this one.
     pub(crate) fn draw(&mut self, points: &[Point], from: u32, to: u32) {
-        for w in points.windows(2) {
-            let (upright, at, piece) = Piece::of(w[0], w[1], [from, to]);
-            let lines = if upright { &mut self.columns } else { &mut self.rows };
-            lines.entry(at).or_default().push(piece);
-        }
-    }
-
-    /// The number of pieces that lie on another link.
-    fn shared(&self, points: &[Point], ends: [u32; 2]) -> usize {
-        let is_shared = |w: &&[Point]| {
-            let (upright, at, piece) = Piece::of(w[0], w[1], ends);
-            let lines = if upright { self.columns.get(&at) } else { self.rows.get(&at) };
-            lines.is_some_and(|lines| lines.iter().any(|other| piece.lies_on(other)))
-        };
-        points.windows(2).filter(is_shared).count()
+        self.lines.draw(points, [from, to]);
     }
 
     /// Calls `f` for each symbol that a segment crosses, except the two symbols in `ends`.
@@ -149,7 +111,7 @@ impl Ways {
             for y in usual.chain(aside).filter(between) {
                 tried.push(vec![a, Point { x: a.x, y }, Point { x: b.x, y }, b]);
             }
-            if let Some(free) = tried.iter().find(|p| self.count(p, ends) + self.shared(p, ends) == 0) {
+            if let Some(free) = tried.iter().find(|p| self.count(p, ends) + self.lines.shared(p, ends) == 0) {
                 return free.clone();
             }
         }
@@ -161,7 +123,7 @@ impl Ways {
         };
         for x in self.columns(y0, y1, ends) {
             let usual = around(x, y0, y1);
-            let is_shared = self.shared(&usual, ends) > 0;
+            let is_shared = self.lines.shared(&usual, ends) > 0;
             tried.push(usual);
             if is_shared {
                 // Rows where other links part or meet stay, since this link parts or meets there too.
@@ -177,7 +139,7 @@ impl Ways {
                 p.windows(2).map(|w| i64::from((w[0].x - w[1].x).abs() + (w[0].y - w[1].y).abs())).sum();
             // A line that goes up does so at the left.
             let right = b.y <= a.y && p.get(2).is_some_and(|c| c.x > a.x.min(b.x));
-            (self.count(p, ends) + self.shared(p, ends), length + if right { 600 } else { 0 })
+            (self.count(p, ends) + self.lines.shared(p, ends), length + if right { 600 } else { 0 })
         };
         tried.into_iter().min_by_key(cost).unwrap_or_else(|| vec![a, b])
     }

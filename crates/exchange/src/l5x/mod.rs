@@ -30,7 +30,7 @@ pub(crate) fn fits(_: &str, root: Option<&str>, bytes: &[u8]) -> bool {
     root == Some("RSLogix5000Content") || root.is_some_and(|r| PARTS.contains(&r)) && has_chart()
 }
 
-/// The beginning of a chart's element.
+/// The start of the tag that holds a chart.
 const CHART: &[u8] = b"<SFCContent";
 
 /// Reads a project, program or routine.

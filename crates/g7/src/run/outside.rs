@@ -1,6 +1,6 @@
 //! An FMU as the plant of a run: found, wired by names, and stepped before each scan of the charts.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use g7_fmi::archive;
 use g7_fmi::description::{Causality, Description, Type, Variable, Version};
@@ -12,6 +12,7 @@ use g7_rig::{Bench, Item, Role};
 use crate::failure::Failure;
 use crate::files;
 use crate::message::talk;
+use crate::scratch::Scratch;
 
 /// The plant: an instance and what is connected.
 pub(super) struct Outside {
@@ -23,17 +24,7 @@ pub(super) struct Outside {
     /// The time up to which it has gone; `None` before the first scan.
     reached: Option<Nanos>,
     /// Deleted behind the instance.
-    _folder: Folder,
-}
-
-/// A folder for the files of an FMU, deleted at the end.
-struct Folder(PathBuf);
-
-impl Drop for Folder {
-    fn drop(&mut self) {
-        // A folder that stays behind lies among other temporary files.
-        let _ = std::fs::remove_dir_all(&self.0);
-    }
+    _folder: Scratch,
 }
 
 /// True if the plant that was asked for is a file of this kind.
@@ -55,8 +46,8 @@ impl Outside {
         let (to_plant, to_charts) = wired(&what, bench, wires).map_err(bad)?;
         let library = library(&what, &all).map_err(bad)?;
         let folder = unpacked(&all)?;
-        let instance =
-            Instance::new(&folder.0.join(library), &folder.0.join("resources"), &what).map_err(bad)?;
+        let instance = Instance::new(&folder.path().join(library), &folder.path().join("resources"), &what)
+            .map_err(bad)?;
         let free = what.variables.iter().filter(|v| v.causality == Causality::Input);
         let free: Vec<&str> = free
             .filter(|v| !to_plant.iter().any(|(_, t)| t.name == v.name))
@@ -242,17 +233,13 @@ fn library(what: &Description, all: &[archive::File]) -> Result<String, String> 
 }
 
 /// The files on disk.
-fn unpacked(all: &[archive::File]) -> Result<Folder, Failure> {
-    let mut bytes = [0; 8];
-    getrandom::fill(&mut bytes).map_err(|e| Failure::Usage(format!("no random numbers: {e}")))?;
-    let path = std::env::temp_dir().join(format!("g7-plant-{:016x}", u64::from_le_bytes(bytes)));
+fn unpacked(all: &[archive::File]) -> Result<Scratch, Failure> {
     let made = |path: &Path| std::fs::create_dir_all(path).map_err(|e| Failure::Write(path.to_path_buf(), e));
-    made(&path)?;
-    let folder = Folder(path);
-    made(&folder.0.join("resources"))?;
+    let folder = Scratch::new()?;
+    made(&folder.path().join("resources"))?;
     for (name, bytes) in all {
-        let file = folder.0.join(name);
-        made(file.parent().unwrap_or(&folder.0))?;
+        let file = folder.path().join(name);
+        made(file.parent().unwrap_or(folder.path()))?;
         files::write(&file, bytes)?;
     }
     Ok(folder)

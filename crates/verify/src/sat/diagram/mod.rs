@@ -42,7 +42,7 @@ use relation::Relation;
 
 /// The search gives up after this many levels. A time counted scan by scan has more; the zones answer such charts.
 const LEVELS: usize = 4096;
-/// The search starts again at most this often with fewer guesses; after that it starts with none.
+/// If guesses were wrong, the search starts again with fewer of them, at most this many times. Then it starts with none.
 const AGAIN: usize = 3;
 /// Scans of the random runs (64 runs side by side) that must stay in the set if the solver did not check it.
 const SAMPLES: usize = 64;

@@ -76,7 +76,7 @@ fn states_are_counted() {
 
 #[test]
 fn a_state_that_no_inputs_leave_is_seen() {
-    // A two-bit counter. In state 3 one constraint wants both inputs at once, and another one forbids that.
+    // A two-bit counter. In state 3 no inputs are allowed: one constraint asks for both of them, another forbids both.
     let mut s = System::default();
     let (a, b) = (s.input(), s.input());
     let (low, high) = (s.latch(false.into()), s.latch(false.into()));
