@@ -57,6 +57,11 @@ const ALLOWED: &[Arrows] = &[
         Some(&["thiserror"]),
     ),
     (
+        "ide",
+        &["g7-model", "g7-syntax", "g7-iec", "g7-exchange", "g7-compile", "g7-draw", "g7-edit", "g7-rig"],
+        Some(&[]),
+    ),
+    (
         "page",
         &[
             "g7-model",
@@ -69,6 +74,7 @@ const ALLOWED: &[Arrows] = &[
             "g7-host",
             "g7-draw",
             "g7-edit",
+            "g7-ide",
             "g7-rig",
             "g7-verify",
         ],

@@ -82,6 +82,14 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     Ok(Edit { splices, select, begin, told: draft.told })
 }
 
+/// Renames the part that is named at a byte of the text, wherever it is used.
+pub fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
+    if !source.clean {
+        return refuse("the text has syntax errors; correct them first");
+    }
+    gestures::rename_at(source, at, to)
+}
+
 /// Executes two gestures as one change.
 fn in_two(source: &Source<'_>, first: &Gesture, second: &Gesture) -> Result<Edit, Refusal> {
     let before = apply(source, first)?;

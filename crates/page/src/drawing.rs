@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use g7_draw::{End, Look, Options, Part, Rect};
 use g7_edit::ItemId;
-use g7_model::{ActionKind, Chart, ChartKind, Order, Step, StepKind, Transition};
+use g7_ide::ids;
+use g7_ide::tables::kind;
+use g7_ide::{File, Readable};
+use g7_model::{ActionKind, Chart, Order, Step, StepKind, Transition};
 use serde::{Deserialize, Serialize};
-
-use crate::file::{File, Readable};
-use crate::ids;
 
 /// The drawing that the page asks for.
 #[derive(Clone, Debug, Deserialize)]
@@ -108,15 +108,6 @@ fn options(wish: &Wish) -> Result<Options, String> {
         pages: wish.pages.as_deref() == Some("pl7"),
         ..Options::default()
     })
-}
-
-/// The word for a kind of chart.
-pub(crate) fn kind(kind: ChartKind) -> &'static str {
-    match kind {
-        ChartKind::Chart => "chart",
-        ChartKind::Expansion => "expansion",
-        ChartKind::Task => "task",
-    }
 }
 
 /// The charts that a step opens: its expansion, or the charts that it encloses.

@@ -7,11 +7,11 @@ use g7_compile::symbols::Symbols;
 use g7_draw::Options;
 use g7_engine::StepId;
 use g7_exchange::FORMATS;
+use g7_ide::File;
+use g7_ide::ids::{self, Thing};
 use g7_model::{Problem, Severity, Span};
 use serde::Serialize;
 
-use crate::file::File;
-use crate::ids::{self, Thing};
 use crate::problems::{Row, row};
 
 /// A form in which a chart can be exported.

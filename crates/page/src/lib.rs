@@ -3,7 +3,8 @@
 //! # Where this sits
 //!
 //! ```text
-//! page (TypeScript) -> JSON -> Page::call -> Files: syntax, edit, compile, draw
+//! page (TypeScript) -> JSON -> Page::call -> ide:   files, gestures, completion, problems …
+//!                                        |-> draw
 //!                                        |-> Runs:  rig, host, engine
 //!                                        \-> prove: verify
 //! ```
@@ -13,7 +14,7 @@
 //!
 //! No message causes a panic; a request that cannot be fulfilled is answered by a sentence for the
 //! user; time is an input; places in texts are UTF-16 code units outside this crate and bytes
-//! inside, and are converted in `positions` only.
+//! inside, and are converted in `places` and `language` only.
 #![deny(unsafe_code)]
 
 mod answer;
@@ -21,16 +22,11 @@ mod drawing;
 mod edit;
 mod explain;
 mod export;
-mod file;
-mod fixes;
-mod gestures;
-mod ids;
 mod language;
-mod logic;
 mod merge;
 mod overview;
 mod page;
-mod positions;
+mod places;
 mod problems;
 mod prove;
 mod request;

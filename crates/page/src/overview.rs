@@ -1,11 +1,12 @@
 //! The overview of a file that the frame of the page shows: charts, problems, plants, tests.
 
 use g7_compile::resolve::{of_profile, with_switch};
+use g7_ide::File;
+use g7_ide::tables::kind;
 use g7_model::{Document, Nanos, ProfileName, Switch};
 use serde::Serialize;
 
-use crate::drawing::{kind, opens};
-use crate::file::File;
+use crate::drawing::opens;
 use crate::problems;
 
 /// The overview of a file.

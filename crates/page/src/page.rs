@@ -4,14 +4,16 @@ use std::collections::BTreeMap;
 
 use crate::answer::{self, Answer, ok};
 use crate::explain::explain;
-use crate::file::File;
 use crate::language;
 use crate::merge::merge;
 use crate::overview::overview;
+use crate::places::inward;
 use crate::prove::{self, Proof};
 use crate::request::Request;
 use crate::run::{self, Run};
-use crate::{drawing, edit, export, gestures, logic, testing};
+use crate::{drawing, edit, export, testing};
+use g7_ide::File;
+use g7_ide::gestures;
 
 /// A page: its open files and its runs.
 #[derive(Default)]
@@ -52,7 +54,7 @@ impl Page {
             Request::Text { file } => ok(&serde_json::json!({ "text": self.file(&file)?.text() })),
             Request::Splice { file, splices, unit } => {
                 let open = self.file_mut(&file)?;
-                let splices = open.inward(&splices);
+                let splices = inward(open, &splices);
                 open.change(&splices, !unit)?;
                 self.look(&file)
             }
@@ -60,7 +62,7 @@ impl Page {
             Request::Undo { file } => ok(&edit::travel(&file, self.file_mut(&file)?, true)?),
             Request::Redo { file } => ok(&edit::travel(&file, self.file_mut(&file)?, false)?),
             Request::Format { file } => ok(&edit::format(&file, self.file_mut(&file)?)?),
-            Request::References { file, at } => ok(&edit::references(self.file(&file)?, at)),
+            Request::References { file, at } => ok(&language::references(self.file(&file)?, at)),
             Request::Copy { file, ids } => {
                 let text = gestures::copy(self.file(&file)?, &ids);
                 ok(&serde_json::json!({ "text": text }))
@@ -69,9 +71,9 @@ impl Page {
             Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
             Request::Forms => ok(&export::forms()),
             Request::Export { file, to } => ok(&export::export(&file, self.file(&file)?, &to)?),
-            Request::Logic { file, id } => ok(&logic::logic(self.file(&file)?, &id)?),
+            Request::Logic { file, id } => ok(&language::logic(self.file(&file)?, &id)?),
             Request::LogicRead { tongue, text } => {
-                ok(&serde_json::json!({ "text": logic::read(tongue, &text)? }))
+                ok(&serde_json::json!({ "text": language::logic_read(tongue, &text)? }))
             }
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
             Request::Explain { code } => {
@@ -86,11 +88,11 @@ impl Page {
                 ok(&prove::compared([self.file(a)?, self.file(b)?], &wish)?)
             }
             Request::Before { file } => ok(&serde_json::json!({ "text": self.file(&file)?.before() })),
-            Request::Tokens { file, from, to } => ok(&language::tokens::tokens(self.file(&file)?, from, to)),
-            Request::Complete { file, at } => ok(&language::complete::complete(self.file(&file)?, at)),
-            Request::Hover { file, at } => ok(&language::hover::hover(self.file(&file)?, at)),
-            Request::Symbols { file } => ok(&language::symbols::tables(&self.file(&file)?.drawn())),
-            Request::Search { file, text } => ok(&language::search::search(self.file(&file)?, &text)),
+            Request::Tokens { file, from, to } => ok(&language::tokens(self.file(&file)?, from, to)),
+            Request::Complete { file, at } => ok(&language::complete(self.file(&file)?, at)),
+            Request::Hover { file, at } => ok(&language::hover(self.file(&file)?, at)),
+            Request::Symbols { file } => ok(&language::tables(self.file(&file)?)),
+            Request::Search { file, text } => ok(&language::search(self.file(&file)?, &text)),
             Request::RunStart(wish) => self.start(&wish),
             Request::RunStop { run } => {
                 self.runs.remove(&run);

@@ -1,11 +1,11 @@
 //! Problems in the form that the page shows.
 
+use g7_ide::File;
+use g7_ide::ids;
 use g7_model::{Document, Problem, Severity};
 use serde::Serialize;
 
-use crate::file::File;
-use crate::fixes::{Fix, SOME, fixes};
-use crate::ids;
+use crate::places::{Change, outward};
 
 /// One problem.
 #[derive(Debug, Serialize)]
@@ -24,6 +24,16 @@ pub(crate) struct Row {
     items: Vec<String>,
     fixes: Vec<Fix>,
 }
+
+/// A change that fixes a problem.
+#[derive(Debug, Serialize)]
+struct Fix {
+    title: String,
+    splices: Vec<Change>,
+}
+
+/// Number of problems for which gestures are tried as fixes; each costs a check of the whole file.
+const SOME: usize = 8;
 
 #[derive(Debug, Serialize)]
 struct Related {
@@ -51,6 +61,7 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
         let (from, to) = file.units(*at);
         Related { from, to, what: what.clone() }
     });
+    let fixes = g7_ide::fixes::fixes(file, p, time);
     Row {
         code: p.code.id,
         title: p.code.title,
@@ -63,7 +74,10 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
         column,
         related: related.collect(),
         items: items(&file.source.document, p),
-        fixes: fixes(file, p, time),
+        fixes: fixes
+            .into_iter()
+            .map(|f| Fix { splices: outward(file, &f.splices), title: f.title })
+            .collect(),
     }
 }
 

@@ -21,7 +21,7 @@ pub(crate) enum Request {
     },
     Splice {
         file: String,
-        splices: Vec<crate::positions::Change>,
+        splices: Vec<crate::places::Change>,
         #[serde(default)]
         unit: bool,
     },
@@ -68,7 +68,7 @@ pub(crate) enum Request {
     },
     /// Converts logic in one of these languages to an expression of the text.
     LogicRead {
-        tongue: crate::logic::Tongue,
+        tongue: crate::language::Speech,
         text: String,
     },
     /// The style sheet of the drawings.

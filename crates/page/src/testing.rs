@@ -1,11 +1,11 @@
 //! Runs the tests of a file in virtual time.
 
 use g7_host::VirtualClock;
+use g7_ide::File;
+use g7_ide::ids;
 use g7_rig::testing::{self, Coverage, Options};
 use serde::Serialize;
 
-use crate::file::File;
-use crate::ids;
 use crate::problems;
 
 /// The results of the tests of a file.

@@ -33,6 +33,12 @@ impl Source {
         Source { document, problems, format, ..Source::plain(name, bytes) }
     }
 
+    /// Reads a .g7 text, whatever its name is.
+    pub fn native(name: &str, bytes: Vec<u8>, id: u32) -> Source {
+        let (document, problems) = g7_syntax::parse_bytes(&bytes, FileId(id));
+        Source { document, problems, ..Source::plain(name, bytes) }
+    }
+
     /// A file that is no chart, for the places of its problems.
     pub fn plain(name: &str, bytes: Vec<u8>) -> Source {
         let text = same_length(&bytes);

@@ -16,7 +16,7 @@ mod rename;
 mod settings;
 mod table;
 
-pub(crate) use rename::rename;
+pub(crate) use rename::{rename, rename_at};
 pub(crate) use table::renamed_row;
 
 use crate::change::{Refusal, refuse};

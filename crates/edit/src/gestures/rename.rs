@@ -26,9 +26,32 @@ pub(crate) fn rename(
     }
     let refs = references(source.document);
     let definition = defined(source, &refs, id, name)?;
+    let edit = everywhere(source, &refs, definition, to)?;
+    Ok(Edit { select: selected(id, to), ..edit })
+}
+
+/// Renames the part that is named at a byte of the text.
+pub(crate) fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
+    let to = to.trim();
+    if to.is_empty() {
+        return refuse("a name cannot be empty");
+    }
+    let refs = references(source.document);
+    match refs.at(u32::try_from(at).unwrap_or(u32::MAX)).cloned() {
+        Some(definition) => everywhere(source, &refs, definition, to),
+        None => refuse("there is no name here that can be changed"),
+    }
+}
+
+fn everywhere(
+    source: &Source<'_>,
+    refs: &References,
+    definition: Definition,
+    to: &str,
+) -> Result<Edit, Refusal> {
     let new = renamed(&definition, to);
     if new == definition {
-        return Ok(Edit { select: selected(id, to), ..Edit::default() });
+        return Ok(Edit::default());
     }
     if refs.declaration(&new).is_some() || taken(source, &new) {
         return refuse(format!("there is {} `{to}` already", kind(&definition)));
@@ -40,8 +63,8 @@ pub(crate) fn rename(
     let splices = tidied(source.text, splices);
     let after =
         spliced(source.text, &splices).ok_or_else(|| Refusal::new("the name cannot be written here"))?;
-    judge(&refs, &after, &definition, &new, &splices)?;
-    Ok(Edit { splices, select: selected(id, to), ..Edit::default() })
+    judge(refs, &after, &definition, &new, &splices)?;
+    Ok(Edit { splices, ..Edit::default() })
 }
 
 /// The part to be renamed, under its old and its new name.

@@ -1,6 +1,7 @@
 //! The questions of a text, with the answers found so far.
 
 use g7_edit::{Splice, spliced};
+use g7_ide::File;
 use g7_model::Severity;
 use g7_rig::Source;
 use g7_rig::testing::plants;
@@ -8,7 +9,6 @@ use g7_verify::{Asked, Budget, Closed, Model, Verdict, ask, ask_with, attempt};
 use serde::Deserialize;
 
 use super::rows::Report;
-use crate::file::File;
 use crate::overview::hash;
 
 /// The page's request: how far the search may go.

@@ -6,13 +6,13 @@
 use g7_compile::ir::VarClass;
 use g7_edit::Splice;
 use g7_engine::{State, StepId, scan};
+use g7_ide::File;
 use g7_model::Type;
 use g7_verify::{Claim, Model, Move, Question, Run, blame, replay};
 
 use super::asked::{changed, closed};
 use super::cures::both;
 use super::place::{Sort, place};
-use crate::file::File;
 
 /// Most inputs that are looked at; each takes a repetition of the run.
 const MOST: usize = 256;

@@ -2,13 +2,13 @@
 //!
 //! A call compares within its limits; the page calls again with larger ones. It counts the time.
 
+use g7_ide::File;
 use g7_model::{ProfileName, Severity};
 use g7_verify::words::{self, Said};
 use g7_verify::{Budget, Compare, Equality, Open, ask};
 use serde::{Deserialize, Serialize};
 
 use super::asked::{Limits, MOST};
-use crate::file::File;
 use crate::run::{Scan, profile};
 
 /// The page's request for a comparison.

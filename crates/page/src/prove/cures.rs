@@ -6,16 +6,16 @@
 
 use g7_edit::{Gesture, ItemId, Splice};
 use g7_engine::Subject;
+use g7_ide::File;
+use g7_ide::gestures::draft;
+use g7_ide::ids::{self, Thing};
 use g7_model::{BinaryOp, Chart, Expr, ExprKind, Name, Transition};
 use g7_verify::{Claim, Model, Run, blame};
 use serde::Serialize;
 
 use super::asked::changed;
 use super::place::line_end;
-use crate::file::File;
-use crate::gestures::draft;
-use crate::ids::{self, Thing};
-use crate::positions::Change;
+use crate::places::{Change, outward};
 
 /// A change of the text that a refuted claim offers.
 #[derive(Debug, Serialize)]
@@ -43,7 +43,7 @@ pub(super) fn cures(file: &File, model: &Model<'_>, run: &Run) -> Vec<Cure> {
         [("exclusive", pair.exclusive()), ("parallel", pair.parallel()), ("priority", pair.priority())];
     let good = |splices: &Vec<Splice>| cures_it(file, model, run, splices);
     let offered = offered.into_iter().filter_map(|(sort, splices)| Some((sort, splices.filter(good)?)));
-    offered.map(|(sort, splices)| Cure::new(sort, pair.receptivities(), file.outward(&splices))).collect()
+    offered.map(|(sort, splices)| Cure::new(sort, pair.receptivities(), outward(file, &splices))).collect()
 }
 
 impl Cure {

@@ -1,9 +1,8 @@
 //! The places in a text where properties and tests are added.
 
 use g7_edit::Splice;
+use g7_ide::File;
 use g7_model::{Item, Span};
-
-use crate::file::File;
 
 /// The sort of item that is added to a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

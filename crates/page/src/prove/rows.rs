@@ -1,12 +1,12 @@
 //! Answers as the panel shows them.
 
+use g7_ide::File;
+use g7_ide::ids;
 use g7_model::{Document, Nanos, Span};
 use g7_verify::words::{self, Said};
 use g7_verify::{Claim, Evidence, Model, Question, Run, Verdict, blame};
 use serde::Serialize;
 
-use crate::file::File;
-use crate::ids;
 use crate::run::Scan;
 
 /// All answers to the questions of a file.

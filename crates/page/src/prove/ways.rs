@@ -3,6 +3,8 @@
 use g7_edit::spliced;
 use g7_engine::{State, scan};
 use g7_host::VirtualClock;
+use g7_ide::File;
+use g7_ide::ids;
 use g7_model::{Document, Item};
 use g7_rig::testing::{self, Coverage};
 use g7_rig::{Bench, Source};
@@ -14,10 +16,8 @@ use super::assume::Refuted;
 use super::cures::{Cure, cures};
 use super::place::{Sort, place};
 use super::saved::{self, Given};
-use crate::file::File;
-use crate::ids;
 use crate::overview::hash;
-use crate::positions::Change;
+use crate::places::{Change, outward};
 use crate::run::Scan;
 
 /// The page's request for the ways on from an answer.
@@ -87,7 +87,7 @@ fn found(
         _ => Vec::new(),
     };
     if let Some((text, splice)) = (Refuted { file, model, question, run: &run, place }).assumed() {
-        cures.push(Cure::new("assume", vec![text], file.outward(&[splice])));
+        cures.push(Cure::new("assume", vec![text], outward(file, &[splice])));
     }
     let (test, untested) = match test(file, model, question, &run, bench) {
         Ok(test) => (Some(test), None),
@@ -132,7 +132,7 @@ fn test(
     if !fails(&file.source.name, text, &title) {
         return Err(saved::UNSEEN);
     }
-    Ok(Added { title, splices: file.outward(&[splice]) })
+    Ok(Added { title, splices: outward(file, &[splice]) })
 }
 
 /// A title that no test of the file has yet.

@@ -5,13 +5,13 @@ use std::collections::{BTreeMap, BTreeSet};
 use g7_compile::plant::Binding;
 use g7_engine::{Program, State};
 use g7_host::{Value, read_text};
+use g7_ide::ids;
 use g7_model::{Nanos, Type};
 use g7_rig::{Activity, Item, Role, values};
 use serde::Serialize;
 
 use super::running::Run;
 use super::sent::{Sent, Show};
-use crate::ids;
 
 /// A frame. Steps, transitions, signals and bindings are numbered as in [`super::start::Started`].
 #[derive(Debug, Serialize)]

@@ -2,10 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use g7_ide::ids::{self, Thing};
 use g7_model::Span;
 use g7_rig::{Bench, Source};
-
-use crate::ids::{self, Thing};
 
 /// The ids of the parts of a program, by their numbers in frames.
 #[derive(Debug, Default)]

@@ -8,6 +8,7 @@ use std::sync::Arc;
 
 use g7_engine::StepId;
 use g7_host::{Kind, Recording, Runner, Start as Restart, Value};
+use g7_ide::Positions;
 use g7_model::{Document, Nanos};
 use g7_rig::{Activity, Bench, Conflicts, Item, Role, values};
 
@@ -16,7 +17,6 @@ use super::places::Places;
 use super::sent::Sent;
 use super::times;
 use super::wish::Start;
-use crate::positions::Positions;
 
 /// Greatest number of scans that one message makes.
 const SCANS: u32 = 20_000;

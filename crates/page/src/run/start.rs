@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use g7_host::Kind;
+use g7_ide::Positions;
 use g7_model::Nanos;
 use g7_rig::{Activity, Conflicts, Role, Source};
 use serde::Serialize;
@@ -13,7 +14,6 @@ use super::places::Places;
 use super::running::{Breaks, Run, recording};
 use super::sent::Sent;
 use super::wish::{Start, bench};
-use crate::positions::Positions;
 
 /// The description of a run: the names of the numbers in its frames.
 #[derive(Debug, Serialize)]

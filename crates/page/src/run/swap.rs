@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
+use g7_ide::Positions;
 use g7_rig::Source;
 
 use super::past::Past;
 use super::places::Places;
 use super::running::{Breaks, Run, recording};
 use super::wish::bench;
-use crate::positions::Positions;
 
 impl Run {
     /// Continues the run with a changed text after the present scan. Returns what would be lost; if

@@ -8,54 +8,58 @@ use g7_model::{
     ActionKind, Document, Expr, ExprKind, FileId, Item, Path, Stmt, StmtKind, Target, Type, UnaryOp, Work,
 };
 use g7_syntax::{il, ladder, print_expr, print_statements};
-use serde::{Deserialize, Serialize};
 
 use crate::file::File;
 use crate::ids::{self, Thing};
 
 /// A language of controllers.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize, PartialEq, Eq)]
-#[serde(rename_all = "lowercase")]
-pub(crate) enum Tongue {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tongue {
+    /// Structured Text.
     St,
+    /// Instruction List.
     Il,
+    /// Ladder.
     Ld,
 }
 
 /// A receptivity, a condition or a body.
-#[derive(Debug, Serialize)]
-pub(crate) struct Piece {
+#[derive(Debug)]
+pub struct Piece {
     /// The part of the symbol that it is.
-    part: Part,
+    pub part: Part,
     /// The number of the action in its step.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    index: Option<usize>,
-    forms: Vec<Form>,
+    pub index: Option<usize>,
+    /// The piece in each of the languages.
+    pub forms: Vec<Form>,
 }
 
 /// A part of a symbol that contains logic.
-#[derive(Clone, Copy, Debug, Serialize)]
-#[serde(rename_all = "snake_case")]
-enum Part {
+#[derive(Clone, Copy, Debug)]
+pub enum Part {
+    /// The receptivity of a transition.
     Receptivity,
+    /// The condition of an action.
     Condition,
+    /// The event of a stored action.
     Event,
+    /// The statements of an action.
     Body,
 }
 
 /// A piece of logic in one language.
-#[derive(Debug, Serialize)]
-struct Form {
-    tongue: Tongue,
+#[derive(Debug)]
+pub struct Form {
+    /// The language.
+    pub tongue: Tongue,
     /// The text; absent if the language cannot express the piece.
-    text: Option<String>,
-    /// The drawing, for Ladder.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    picture: Option<String>,
+    pub text: Option<String>,
+    /// The drawing as SVG, for Ladder.
+    pub picture: Option<String>,
 }
 
 /// The logic of a transition, of an action, or of all actions of a step.
-pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
+pub fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     let document = &file.source.document;
     let (_, thing) =
         ids::things(document).find(|(_, t)| t.id() == id).ok_or_else(|| format!("there is no `{id}`"))?;
@@ -78,7 +82,7 @@ pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
 }
 
 /// Reads a condition in one of the languages and returns it as an expression of a .g7 text.
-pub(crate) fn read(tongue: Tongue, text: &str) -> Result<String, String> {
+pub fn read(tongue: Tongue, text: &str) -> Result<String, String> {
     let (expr, problems) = match tongue {
         Tongue::St => g7_syntax::parse_expr(text, FileId(0)),
         Tongue::Il => il::expression(text, FileId(0)),

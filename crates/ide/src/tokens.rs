@@ -1,18 +1,106 @@
 //! Colours for a text: the class of each word.
 
 use std::collections::HashSet;
+use std::ops::Range;
 
 use g7_model::{Type, words};
 use g7_syntax::{Token, TokenKind};
 
-use super::definitions::{Meaning, names};
 use crate::file::File;
+use crate::names::{Meaning, names};
 
-/// A token for the page: its place in code units, and its class.
-pub(crate) type Coloured = (usize, usize, &'static str);
+/// The class of a token, from which an editor chooses the colour.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Class {
+    /// A word of the language.
+    Keyword,
+    /// A type.
+    Type,
+    /// A chart.
+    Chart,
+    /// A variable, or another name that is no step and no chart.
+    Variable,
+    /// A step, or its step variable.
+    Step,
+    /// A function.
+    Function,
+    /// A name that is not known.
+    Name,
+    /// A number.
+    Number,
+    /// A duration.
+    Time,
+    /// A text in quotes.
+    String,
+    /// A comment of the chart.
+    Comment,
+    /// A note of the author, which belongs to no symbol.
+    Note,
+    /// A direct name, `%I0.1`.
+    Direct,
+    /// A bracket or brace.
+    Bracket,
+    /// A sign between other tokens.
+    Punctuation,
+    /// An operator.
+    Operator,
+}
 
-/// The coloured tokens between two code units.
-pub(crate) fn tokens(file: &File, from: usize, to: usize) -> Vec<Coloured> {
+impl Class {
+    /// All classes.
+    pub const ALL: [Class; 16] = [
+        Class::Keyword,
+        Class::Type,
+        Class::Chart,
+        Class::Variable,
+        Class::Step,
+        Class::Function,
+        Class::Name,
+        Class::Number,
+        Class::Time,
+        Class::String,
+        Class::Comment,
+        Class::Note,
+        Class::Direct,
+        Class::Bracket,
+        Class::Punctuation,
+        Class::Operator,
+    ];
+
+    /// The word for the class.
+    pub fn name(self) -> &'static str {
+        match self {
+            Class::Keyword => "keyword",
+            Class::Type => "type",
+            Class::Chart => "chart",
+            Class::Variable => "variable",
+            Class::Step => "step",
+            Class::Function => "function",
+            Class::Name => "name",
+            Class::Number => "number",
+            Class::Time => "time",
+            Class::String => "string",
+            Class::Comment => "comment",
+            Class::Note => "note",
+            Class::Direct => "direct",
+            Class::Bracket => "bracket",
+            Class::Punctuation => "punctuation",
+            Class::Operator => "operator",
+        }
+    }
+}
+
+/// A token: its bytes, and its class.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Coloured {
+    /// Its bytes.
+    pub range: Range<usize>,
+    /// Its class.
+    pub class: Class,
+}
+
+/// The tokens that lie, at least in part, between two bytes.
+pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
     let text = file.text();
     let readable = file.drawn();
     let (mut variables, mut steps, mut charts) = (HashSet::new(), HashSet::new(), HashSet::new());
@@ -24,7 +112,7 @@ pub(crate) fn tokens(file: &File, from: usize, to: usize) -> Vec<Coloured> {
         };
         list.insert(n.name.text.to_string());
     }
-    let (first, last) = (file.positions.byte(text, from), file.positions.byte(text, to));
+    let (first, last) = (range.start, range.end);
     let mut out = Vec::new();
     let all: Vec<Token> = g7_syntax::tokens(text).take_while(|t| t.start < last).collect();
     for (i, token) in all.iter().enumerate() {
@@ -40,34 +128,33 @@ pub(crate) fn tokens(file: &File, from: usize, to: usize) -> Vec<Coloured> {
                 let known = variables.contains(name) || steps.contains(name) || charts.contains(name);
                 let ticked = token.kind == TokenKind::Ticked;
                 if !ticked && is_keyword(text, word, before, token, behind, known) {
-                    "keyword"
+                    Class::Keyword
                 } else if !ticked && Type::named(&word.to_ascii_uppercase()).is_some() && !known {
-                    "type"
+                    Class::Type
                 } else if charts.contains(name) {
-                    "chart"
+                    Class::Chart
                 } else if variables.contains(name) {
-                    "variable"
+                    Class::Variable
                 } else if steps.contains(name) || is_activity(name, &steps) {
-                    "step"
+                    Class::Step
                 } else if behind.is_some_and(|b| b.kind == TokenKind::LParen && b.start == token.end) {
-                    "function"
+                    Class::Function
                 } else {
-                    "name"
+                    Class::Name
                 }
             }
-            TokenKind::Number if steps.contains(word) && is_step_place(text, before, behind) => "step",
-            TokenKind::Number => "number",
-            TokenKind::Time => "time",
-            TokenKind::Str => "string",
-            TokenKind::Comment => "comment",
-            TokenKind::Note => "note",
-            TokenKind::Direct => "direct",
-            TokenKind::LBrace | TokenKind::RBrace | TokenKind::LParen | TokenKind::RParen => "bracket",
-            TokenKind::Comma | TokenKind::Semi | TokenKind::Colon | TokenKind::PathDot => "punctuation",
-            TokenKind::Arrow | TokenKind::Star | TokenKind::Sign => "operator",
+            TokenKind::Number if steps.contains(word) && is_step_place(text, before, behind) => Class::Step,
+            TokenKind::Number => Class::Number,
+            TokenKind::Time => Class::Time,
+            TokenKind::Str => Class::String,
+            TokenKind::Comment => Class::Comment,
+            TokenKind::Note => Class::Note,
+            TokenKind::Direct => Class::Direct,
+            TokenKind::LBrace | TokenKind::RBrace | TokenKind::LParen | TokenKind::RParen => Class::Bracket,
+            TokenKind::Comma | TokenKind::Semi | TokenKind::Colon | TokenKind::PathDot => Class::Punctuation,
+            TokenKind::Arrow | TokenKind::Star | TokenKind::Sign => Class::Operator,
         };
-        let unit = |byte| file.positions.unit(text, byte);
-        out.push((unit(token.start), unit(token.end), class));
+        out.push(Coloured { range: token.start..token.end, class });
     }
     out
 }

@@ -1,23 +1,24 @@
 //! A short explanation of the text under the pointer.
 
-use g7_model::{Qualifier, StandardFunction};
-use serde::Serialize;
+use std::ops::Range;
 
-use super::definitions::{Meaning, Named, meaning, word_at};
-use super::symbols::declaration;
+use g7_model::{Qualifier, StandardFunction};
+
 use crate::file::File;
+use crate::names::{Meaning, Named, meaning, word_at};
+use crate::tables::declaration;
 
 /// An explanation of a piece of the text.
-#[derive(Debug, Serialize)]
-pub(crate) struct Hover {
-    from: usize,
-    to: usize,
-    markdown: String,
+#[derive(Debug)]
+pub struct Hover {
+    /// The bytes that it explains.
+    pub range: Range<usize>,
+    /// The explanation, as Markdown.
+    pub markdown: String,
 }
 
-/// The explanation of the text at a code unit.
-pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
-    let byte = file.positions.byte(file.text(), at);
+/// The explanation of the text at a byte.
+pub fn hover(file: &File, byte: usize) -> Option<Hover> {
     let problem = file.problems.iter().filter(|p| {
         let range = file.source.range(p.at);
         range.start <= byte && byte <= range.end && range.len() < 400
@@ -30,21 +31,16 @@ pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
         .collect();
     let word = word_at(file.text(), byte);
     let named = word.as_ref().and_then(|w| meaning(&file.source.document, w));
-    let (from, to) = match (&word, &named) {
-        (Some(w), _) => {
-            (file.positions.unit(file.text(), w.token.start), file.positions.unit(file.text(), w.token.end))
-        }
-        (None, _) => {
-            let first = file.problems.iter().find(|p| {
-                let range = file.source.range(p.at);
-                range.start <= byte && byte <= range.end
-            })?;
-            file.units(first.at)
+    let range = match &word {
+        Some(w) => w.token.start..w.token.end,
+        None => {
+            let mut ranges = file.problems.iter().map(|p| file.source.range(p.at));
+            ranges.find(|range| range.start <= byte && byte <= range.end)?
         }
     };
     let about = named.map(|n| describe(&n)).or_else(|| word.and_then(|w| explain(w.text)));
     let parts: Vec<String> = said.into_iter().chain(about).collect();
-    (!parts.is_empty()).then(|| Hover { from, to, markdown: parts.join("\n\n") })
+    (!parts.is_empty()).then(|| Hover { range, markdown: parts.join("\n\n") })
 }
 
 fn describe(n: &Named<'_>) -> String {
@@ -69,7 +65,7 @@ fn describe(n: &Named<'_>) -> String {
         }
         Meaning::Chart(c) => {
             let count = format!("{} steps, {} transitions", c.steps().count(), c.transitions().count());
-            with(format!("{} `{name}`: {count}", crate::drawing::kind(c.kind)), c.comment.as_deref())
+            with(format!("{} `{name}`: {count}", crate::tables::kind(c.kind)), c.comment.as_deref())
         }
         Meaning::Other(what, comment) => with(format!("{what} `{name}`"), comment),
     }

@@ -4,28 +4,35 @@
 use g7_edit::ItemId;
 use g7_model::{Chart, Document, Span, Step};
 
-pub(crate) fn step(chart: &str, name: &str) -> String {
+/// The id of a step.
+pub fn step(chart: &str, name: &str) -> String {
     ItemId::step(chart, name).to_string()
 }
 
-pub(crate) fn action(chart: &str, step: &str, index: usize) -> String {
+/// The id of an action.
+pub fn action(chart: &str, step: &str, index: usize) -> String {
     ItemId::action(chart, step, index).to_string()
 }
 
-pub(crate) fn transition(chart: &str, number: usize) -> String {
+/// The id of a transition.
+pub fn transition(chart: &str, number: usize) -> String {
     ItemId::transition(chart, number).to_string()
 }
 
 /// A part of a chart that has an id.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Thing<'d> {
+pub enum Thing<'d> {
+    /// A step of a chart.
     Step(&'d Chart, &'d Step),
+    /// An action: its chart, its step, its number.
     Action(&'d Chart, &'d Step, usize),
+    /// A transition: its chart, its number.
     Transition(&'d Chart, usize),
 }
 
 impl Thing<'_> {
-    pub(crate) fn id(self) -> String {
+    /// Its id.
+    pub fn id(self) -> String {
         match self {
             Thing::Step(c, s) => step(&c.name.text, &s.name.text),
             Thing::Action(c, s, i) => action(&c.name.text, &s.name.text, i),
@@ -35,7 +42,7 @@ impl Thing<'_> {
 }
 
 /// All parts of charts that have ids, in the order of the text, with their places.
-pub(crate) fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
+pub fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
     document.charts().flat_map(|c| {
         let steps = c.steps().flat_map(move |s| {
             let own = std::iter::once((s.at.0, Thing::Step(c, s)));
@@ -47,7 +54,7 @@ pub(crate) fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'
 }
 
 /// The innermost part that contains a place.
-pub(crate) fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
+pub fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
     let chart = document.charts().find(|c| holds(c.at.0, place))?;
     let only = |c: &Chart| std::ptr::eq(c, chart);
     things(document)
@@ -62,6 +69,6 @@ pub(crate) fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
 }
 
 /// True if a place lies inside another.
-pub(crate) fn holds(outer: Span, inner: Span) -> bool {
+pub fn holds(outer: Span, inner: Span) -> bool {
     outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
 }

@@ -1,4 +1,4 @@
-//! A file that is open in the page.
+//! A file that is open in an editor.
 
 use std::sync::Arc;
 
@@ -6,27 +6,32 @@ use g7_edit::{History, Splice, spliced};
 use g7_model::{Document, FileId, Problem, Severity, Span};
 use g7_rig::Source;
 
-use crate::positions::{Change, Positions};
+use crate::positions::Positions;
 
 /// The text of a file, its meaning, and its problems.
-pub(crate) struct File {
-    pub(crate) source: Source,
-    pub(crate) positions: Arc<Positions>,
+pub struct File {
+    /// The text, the document and the problems of its syntax.
+    pub source: Source,
+    /// The places of the text in other units.
+    pub positions: Arc<Positions>,
     /// The latest document without syntax errors.
     readable: Option<Readable>,
-    pub(crate) problems: Vec<Problem>,
-    pub(crate) version: u64,
+    /// All problems, in the order of the text.
+    pub problems: Vec<Problem>,
+    /// The number of changes since the file was opened.
+    pub version: u64,
     /// True if it was imported from a foreign format.
-    pub(crate) imported: bool,
-    pub(crate) history: History,
+    pub imported: bool,
+    /// The changes that can be undone.
+    pub history: History,
 }
 
 /// Greatest length of a text that is opened, in bytes.
-pub(crate) const MOST: usize = 16 << 20;
+pub const MOST: usize = 16 << 20;
 
 impl File {
     /// Reads a text; a file of a foreign format is converted to .g7 text.
-    pub(crate) fn open(name: &str, text: String) -> Result<File, String> {
+    pub fn open(name: &str, text: String) -> Result<File, String> {
         if text.len() > MOST {
             return Err(format!("{name} is too large for the editor"));
         }
@@ -43,7 +48,7 @@ impl File {
             told = std::mem::take(&mut source.problems);
             g7_draw::make_room(&mut source.document);
             let text = g7_syntax::print(&source.document, None);
-            source = Source::new(name, text.into_bytes(), 0);
+            source = Source::native(name, text.into_bytes(), 0);
         }
         let mut file = File {
             positions: Arc::new(Positions::new(&source.text)),
@@ -61,7 +66,7 @@ impl File {
     }
 
     /// Makes a change and records it for undo; typed characters are joined to words.
-    pub(crate) fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
+    pub fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
         let text = spliced(self.text(), splices).ok_or("these places are none of the text")?;
         if text.len() > MOST {
             return Err("the text would be too large for the editor".to_owned());
@@ -74,7 +79,7 @@ impl File {
     }
 
     /// Undoes the last change, or redoes it; returns the splices.
-    pub(crate) fn travel(&mut self, back: bool) -> Result<Vec<Splice>, String> {
+    pub fn travel(&mut self, back: bool) -> Result<Vec<Splice>, String> {
         let splices = if back { self.history.undo() } else { self.history.redo() };
         let nothing = if back { "nothing to undo" } else { "nothing to redo" };
         let splices = splices.ok_or(nothing)?;
@@ -84,49 +89,39 @@ impl File {
     }
 
     /// The text before the last change, if there was one.
-    pub(crate) fn before(&self) -> Option<String> {
+    pub fn before(&self) -> Option<String> {
         let splices = self.history.clone().undo()?;
         spliced(self.text(), &splices)
     }
 
     fn set_text(&mut self, text: String) {
-        self.source = Source::new(&self.source.name, text.into_bytes(), 0);
+        // The form was decided when the file was opened: an imported file keeps its name, but its text
+        // is .g7 text now.
+        self.source = Source::native(&self.source.name, text.into_bytes(), 0);
         self.positions = Arc::new(Positions::new(&self.source.text));
         self.version += 1;
         self.judge();
     }
 
     /// The file in the form that gestures need.
-    pub(crate) fn as_edited(&self) -> g7_edit::Source<'_> {
+    pub fn as_edited(&self) -> g7_edit::Source<'_> {
         g7_edit::Source { text: self.text(), document: &self.source.document, clean: self.is_clean() }
     }
 
-    /// Converts splices to code units of the text before them, as they are sent to the page.
-    pub(crate) fn outward(&self, splices: &[Splice]) -> Vec<Change> {
-        let unit = |byte| self.positions.unit(self.text(), byte);
-        let change = |s: &Splice| Change { from: unit(s.start), to: unit(s.end), insert: s.insert.clone() };
-        splices.iter().map(change).collect()
-    }
-
-    /// Converts splices from code units, as the page sends them.
-    pub(crate) fn inward(&self, splices: &[Change]) -> Vec<Splice> {
-        let byte = |unit| self.positions.byte(self.text(), unit);
-        splices.iter().map(|s| Splice::new(byte(s.from), byte(s.to), s.insert.as_str())).collect()
-    }
-
     /// A place in code units.
-    pub(crate) fn units(&self, at: Span) -> (usize, usize) {
+    pub fn units(&self, at: Span) -> (usize, usize) {
         let range = self.source.range(at);
         let unit = |byte| self.positions.unit(self.text(), byte);
         (unit(range.start), unit(range.end))
     }
 
-    pub(crate) fn text(&self) -> &str {
+    /// The text.
+    pub fn text(&self) -> &str {
         &self.source.text
     }
 
     /// True if the text has no syntax errors.
-    pub(crate) fn is_clean(&self) -> bool {
+    pub fn is_clean(&self) -> bool {
         !self.source.has_errors()
     }
 
@@ -153,7 +148,7 @@ impl File {
 
     /// The document to draw: that of the latest text without syntax errors. If there was never such
     /// a text, it is the readable part of the present one.
-    pub(crate) fn drawn(&self) -> Readable {
+    pub fn drawn(&self) -> Readable {
         match &self.readable {
             Some(readable) => Readable { stale: !self.is_clean(), ..readable.clone() },
             None => self.present(false),
@@ -161,23 +156,37 @@ impl File {
     }
 }
 
+/// The nearest byte before a place, or at it, at which a character begins.
+pub(crate) fn floor(text: &str, byte: usize) -> usize {
+    let mut byte = byte.min(text.len());
+    while !text.is_char_boundary(byte) {
+        byte -= 1;
+    }
+    byte
+}
+
 /// A readable document, with the text from which it was parsed.
 #[derive(Clone)]
-pub(crate) struct Readable {
-    pub(crate) document: Arc<Document>,
-    pub(crate) text: Arc<str>,
-    pub(crate) positions: Arc<Positions>,
-    pub(crate) stale: bool,
+pub struct Readable {
+    /// The document.
+    pub document: Arc<Document>,
+    /// The text.
+    pub text: Arc<str>,
+    /// The places of the text in other units.
+    pub positions: Arc<Positions>,
+    /// True if it is an earlier text, because the present one has syntax errors.
+    pub stale: bool,
 }
 
 impl Readable {
     /// A place in code units of the text.
-    pub(crate) fn units(&self, at: Span) -> (usize, usize) {
+    pub fn units(&self, at: Span) -> (usize, usize) {
         let unit = |byte: u32| self.positions.unit(&self.text, byte as usize);
         (unit(at.start), unit(at.end))
     }
 
-    pub(crate) fn words(&self, at: Span) -> String {
+    /// The words at a place.
+    pub fn words(&self, at: Span) -> String {
         self.text.get(at.start as usize..at.end as usize).unwrap_or("").to_owned()
     }
 }

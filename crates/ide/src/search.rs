@@ -1,30 +1,32 @@
 //! Searches a text in a file; each result names the symbol that contains it.
 
+use std::ops::Range;
+
 use g7_model::{FileId, Span};
-use serde::Serialize;
 
 use crate::file::File;
 use crate::ids;
 
 /// A result.
-#[derive(Debug, Serialize)]
-pub(crate) struct Hit {
-    from: usize,
-    to: usize,
-    line: usize,
+#[derive(Debug)]
+pub struct Hit {
+    /// The bytes of the result.
+    pub range: Range<usize>,
+    /// The number of its line, from 1.
+    pub line: usize,
     /// The line that contains it.
-    text: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    id: Option<String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    chart: Option<String>,
+    pub text: String,
+    /// The id of the symbol that contains it.
+    pub id: Option<String>,
+    /// The chart that contains it.
+    pub chart: Option<String>,
 }
 
 /// Greatest number of results.
 const MOST: usize = 200;
 
 /// Finds a text in a file, regardless of case.
-pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
+pub fn search(file: &File, what: &str) -> Vec<Hit> {
     let wanted = what.trim().to_lowercase();
     if wanted.is_empty() {
         return Vec::new();
@@ -36,10 +38,8 @@ pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
             let (first, last) = (start + at.start, start + at.end);
             let span = Span { file: FileId(0), start: first as u32, end: last as u32 };
             let document = &file.source.document;
-            let unit = |byte| file.positions.unit(file.text(), byte);
             hits.push(Hit {
-                from: unit(first),
-                to: unit(last),
+                range: first..last,
                 line: number + 1,
                 text: line.trim().chars().take(200).collect(),
                 id: ids::at(document, span).map(|t| t.id()),

@@ -5,10 +5,12 @@ use g7_syntax::{Token, TokenKind};
 
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Meaning<'d> {
+pub enum Meaning<'d> {
     /// A variable, with its chart if it belongs to one.
     Variable(&'d VarDecl, Option<&'d Chart>),
+    /// A step of a chart.
     Step(&'d Chart, &'d Step),
+    /// A chart.
     Chart(&'d Chart),
     /// A named action, function, section, plant, or part of a plant: the word for its kind, and its
     /// comment.
@@ -17,15 +19,17 @@ pub(crate) enum Meaning<'d> {
 
 /// A name at its definition.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Named<'d> {
-    pub(crate) name: &'d Name,
-    pub(crate) meaning: Meaning<'d>,
+pub struct Named<'d> {
+    /// The name.
+    pub name: &'d Name,
+    /// What it means.
+    pub meaning: Meaning<'d>,
     /// The part of the text in which it is known; everywhere if absent.
-    pub(crate) scope: Option<Span>,
+    pub scope: Option<Span>,
 }
 
 /// All names that a document defines, in the order of the text.
-pub(crate) fn names(document: &Document) -> Vec<Named<'_>> {
+pub fn names(document: &Document) -> Vec<Named<'_>> {
     let mut all = Vec::new();
     for item in &document.items {
         match item {
@@ -111,15 +115,17 @@ fn plant<'d>(item: &'d PlantItem, all: &mut Vec<Named<'d>>) {
 }
 
 /// A word of a text, with the path before it.
-pub(crate) struct Word<'t> {
-    pub(crate) token: Token,
-    pub(crate) text: &'t str,
+pub struct Word<'t> {
+    /// Its place.
+    pub token: Token,
+    /// The word without back-ticks.
+    pub text: &'t str,
     /// `Chart` in `Chart.name`.
-    pub(crate) before: Option<&'t str>,
+    pub before: Option<&'t str>,
 }
 
 /// The word that contains a byte or ends there.
-pub(crate) fn word_at(text: &str, byte: usize) -> Option<Word<'_>> {
+pub fn word_at(text: &str, byte: usize) -> Option<Word<'_>> {
     let mut before: Option<Token> = None;
     let mut dotted = false;
     for token in g7_syntax::tokens(text) {
@@ -146,7 +152,7 @@ fn plain(text: &str, token: Token) -> Option<&str> {
 }
 
 /// The definition of a word of the text, as far as the place decides it.
-pub(crate) fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>> {
+pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>> {
     let at = u32::try_from(word.token.start).ok()?;
     let inside = |s: Span| s.start <= at && at < s.end;
     // `X12` and `Chart.X12` name the step variable of step 12.

@@ -1,10 +1,8 @@
 //! Converts between bytes of a text, UTF-16 code units, and lines with columns.
 
-use serde::{Deserialize, Serialize};
-
-/// The conversion for one text.
+/// The places of one text.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Positions {
+pub struct Positions {
     /// For each line: its first byte and its first code unit.
     lines: Vec<(usize, usize)>,
     units: usize,
@@ -12,7 +10,8 @@ pub(crate) struct Positions {
 }
 
 impl Positions {
-    pub(crate) fn new(text: &str) -> Positions {
+    /// The places of a text.
+    pub fn new(text: &str) -> Positions {
         let ascii = text.is_ascii();
         let mut lines = vec![(0, 0)];
         let mut units = 0;
@@ -31,12 +30,12 @@ impl Positions {
     }
 
     /// The length of the text in code units.
-    pub(crate) fn units(&self) -> usize {
+    pub fn units(&self) -> usize {
         self.units
     }
 
     /// The code unit at a byte; a byte inside a character counts as its start.
-    pub(crate) fn unit(&self, text: &str, byte: usize) -> usize {
+    pub fn unit(&self, text: &str, byte: usize) -> usize {
         if self.ascii {
             return byte.min(self.units);
         }
@@ -48,7 +47,7 @@ impl Positions {
     }
 
     /// The byte at a code unit; a code unit inside a character counts as its start.
-    pub(crate) fn byte(&self, text: &str, unit: usize) -> usize {
+    pub fn byte(&self, text: &str, unit: usize) -> usize {
         if self.ascii {
             return unit.min(self.units);
         }
@@ -64,22 +63,29 @@ impl Positions {
         byte
     }
 
+    /// The line of a byte, from 0, and the number of UTF-16 code units before it on its line.
+    pub fn line_unit(&self, text: &str, byte: usize) -> (usize, usize) {
+        let line = self.lines.partition_point(|(b, _)| *b <= byte).saturating_sub(1);
+        let (_, first) = self.lines.get(line).copied().unwrap_or_default();
+        (line, self.unit(text, byte).saturating_sub(first))
+    }
+
+    /// The byte at a line, from 0, and a number of UTF-16 code units on it. A place beyond the end of
+    /// a line is that end.
+    pub fn at_line_unit(&self, text: &str, line: usize, unit: usize) -> usize {
+        let Some((start, first)) = self.lines.get(line).copied() else { return text.len() };
+        let end = self.lines.get(line + 1).map_or(text.len(), |(next, _)| next - 1);
+        self.byte(text, first.saturating_add(unit)).clamp(start, end)
+    }
+
     /// The line and the column of a byte, both from 1; the column counts characters.
-    pub(crate) fn line_column(&self, text: &str, byte: usize) -> (usize, usize) {
+    pub fn line_column(&self, text: &str, byte: usize) -> (usize, usize) {
         let line = self.lines.partition_point(|(b, _)| *b <= byte).saturating_sub(1);
         let (start, _) = self.lines.get(line).copied().unwrap_or_default();
         let rest = text.get(start..).unwrap_or("");
         let column = rest.char_indices().take_while(|(i, c)| start + i + c.len_utf8() <= byte).count();
         (line + 1, column + 1)
     }
-}
-
-/// A replacement in a text; places are in code units.
-#[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
-pub(crate) struct Change {
-    pub(crate) from: usize,
-    pub(crate) to: usize,
-    pub(crate) insert: String,
 }
 
 #[cfg(test)]
@@ -102,5 +108,9 @@ mod tests {
         assert_eq!(p.byte(text, 999), text.len());
         assert_eq!(p.unit(text, 999), p.units());
         assert_eq!(p.line_column(text, text.find('g').unwrap()), (3, 3));
+        assert_eq!(p.line_unit(text, text.find('x').unwrap()), (1, 2), "😀 has two units");
+        assert_eq!(p.at_line_unit(text, 1, 2), text.find('x').unwrap());
+        assert_eq!(p.at_line_unit(text, 1, 99), text.find("\nh").unwrap(), "beyond the line: its end");
+        assert_eq!(p.at_line_unit(text, 9, 0), text.len());
     }
 }

@@ -2,26 +2,31 @@
 
 use g7_model::{Document, ProfileName, Qualifier, StandardFunction, Type};
 use g7_syntax::{Token, TokenKind};
-use serde::Serialize;
 
-use super::definitions::{Meaning, names};
-use super::symbols::declaration;
-use crate::file::File;
+use crate::file::{File, floor};
+use crate::names::{Meaning, names};
+use crate::tables::declaration;
 
 /// The possible words, and the place at which the word begins.
-#[derive(Debug, Serialize)]
-pub(crate) struct Completion {
-    from: usize,
-    items: Vec<Choice>,
+#[derive(Debug)]
+pub struct Completion {
+    /// The byte at which the word to be completed begins.
+    pub from: usize,
+    /// The words, the likely ones first.
+    pub items: Vec<Choice>,
 }
 
 /// One possible word.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub(crate) struct Choice {
-    label: String,
-    kind: &'static str,
-    detail: String,
-    insert: String,
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Choice {
+    /// The word as it is shown.
+    pub label: String,
+    /// What it is: `keyword`, `variable`, `step`, `chart`, `function`, `type`, `member`, …
+    pub kind: &'static str,
+    /// What it does, or its declaration.
+    pub detail: String,
+    /// The text that takes the place of the typed word.
+    pub insert: String,
 }
 
 /// The item whose braces enclose a place.
@@ -99,10 +104,10 @@ const TEST: &[(&str, &str)] = &[
     ("repeat", "again and again"),
 ];
 
-/// The completion at a code unit.
-pub(crate) fn complete(file: &File, at: usize) -> Completion {
+/// The completion at a byte.
+pub fn complete(file: &File, at: usize) -> Completion {
     let text = file.text();
-    let byte = file.positions.byte(text, at);
+    let byte = floor(text, at);
     let before: Vec<Token> = g7_syntax::tokens(text).take_while(|t| t.start < byte).collect();
     // A word that ends at the place is the one being typed.
     let typed = before.last().filter(|t| t.end >= byte && is_word(t.kind));
@@ -117,7 +122,7 @@ pub(crate) fn complete(file: &File, at: usize) -> Completion {
     items.sort_by_key(|c| !c.label.to_lowercase().starts_with(&prefix));
     items.dedup();
     items.truncate(200);
-    Completion { from: file.positions.unit(text, from), items }
+    Completion { from, items }
 }
 
 fn is_word(kind: TokenKind) -> bool {
@@ -353,7 +358,7 @@ impl Place<'_> {
                     found.push(activity(name, &c.name.text))
                 }
                 Meaning::Step(..) => {}
-                Meaning::Chart(c) => found.push(choice(name, "chart", crate::drawing::kind(c.kind), &shown)),
+                Meaning::Chart(c) => found.push(choice(name, "chart", crate::tables::kind(c.kind), &shown)),
                 Meaning::Other(what, comment) => {
                     if n.scope.is_none_or(|s| s.start <= self.at && self.at <= s.end) && what != "transition"
                     {

@@ -1,53 +1,79 @@
 //! The tables of variables and steps.
 
-use g7_model::{Document, Type, VarDecl, VarKind};
-use serde::Serialize;
+use g7_model::{ChartKind, Document, Span, Type, VarDecl, VarKind};
 
-use super::definitions::{Meaning, names};
 use crate::file::Readable;
 use crate::ids;
+use crate::names::{Meaning, names};
 
 /// The tables of a file.
-#[derive(Debug, Serialize)]
-pub(crate) struct Tables {
-    stale: bool,
-    variables: Vec<Variable>,
-    steps: Vec<Step>,
+#[derive(Debug)]
+pub struct Tables {
+    /// True if they show an earlier text, because the present one has syntax errors.
+    pub stale: bool,
+    /// The variables, in the order of the text.
+    pub variables: Vec<Variable>,
+    /// The steps, in the order of the text.
+    pub steps: Vec<Step>,
 }
 
-#[derive(Debug, Serialize)]
-struct Variable {
-    name: String,
-    class: &'static str,
-    #[serde(rename = "type")]
-    ty: String,
-    init: String,
-    address: String,
-    inverted: bool,
-    retain: bool,
-    safe: String,
-    comment: String,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    chart: Option<String>,
-    from: usize,
-    to: usize,
+/// A variable, as declared; what is not there is empty.
+#[derive(Debug)]
+pub struct Variable {
+    /// Its name.
+    pub name: String,
+    /// `input`, `output`, `var` or `const`.
+    pub class: &'static str,
+    /// Its type.
+    pub ty: String,
+    /// Its initial value.
+    pub init: String,
+    /// The address of its channel.
+    pub address: String,
+    /// True if the channel carries the complement.
+    pub inverted: bool,
+    /// True if it keeps its value over a warm restart.
+    pub retain: bool,
+    /// Its value after a fault.
+    pub safe: String,
+    /// Its comment.
+    pub comment: String,
+    /// The chart that it belongs to.
+    pub chart: Option<String>,
+    /// The place of its name.
+    pub at: Span,
     /// The number of uses in the text, without the declaration.
-    uses: usize,
+    pub uses: usize,
 }
 
-#[derive(Debug, Serialize)]
-struct Step {
-    id: String,
-    name: String,
-    chart: String,
-    comment: String,
-    initial: bool,
-    from: usize,
-    to: usize,
+/// A step.
+#[derive(Debug)]
+pub struct Step {
+    /// Its id.
+    pub id: String,
+    /// Its name.
+    pub name: String,
+    /// Its chart.
+    pub chart: String,
+    /// Its comment; empty if there is none.
+    pub comment: String,
+    /// True if it is active in the initial situation.
+    pub initial: bool,
+    /// The place of its name.
+    pub at: Span,
+}
+
+/// The word for a kind of chart.
+pub fn kind(kind: ChartKind) -> &'static str {
+    match kind {
+        ChartKind::Chart => "chart",
+        ChartKind::Expansion => "expansion",
+        ChartKind::Task => "task",
+    }
 }
 
 /// The word for a class of variables.
-pub(crate) fn class(kind: VarKind) -> &'static str {
+pub fn class(kind: VarKind) -> &'static str {
     match kind {
         VarKind::Input => "input",
         VarKind::Output => "output",
@@ -57,7 +83,7 @@ pub(crate) fn class(kind: VarKind) -> &'static str {
 }
 
 /// The tables of a document.
-pub(crate) fn tables(readable: &Readable) -> Tables {
+pub fn tables(readable: &Readable) -> Tables {
     let document: &Document = &readable.document;
     let (mut variables, mut steps) = (Vec::new(), Vec::new());
     let mut counts: std::collections::HashMap<&str, usize> = Default::default();
@@ -66,7 +92,7 @@ pub(crate) fn tables(readable: &Readable) -> Tables {
         *counts.entry(word).or_default() += 1;
     }
     for n in names(document) {
-        let (from, to) = readable.units(n.name.at.0);
+        let at = n.name.at.0;
         match n.meaning {
             Meaning::Variable(v, chart) => variables.push(Variable {
                 name: n.name.text.to_string(),
@@ -79,8 +105,7 @@ pub(crate) fn tables(readable: &Readable) -> Tables {
                 safe: v.safe.as_ref().map_or(String::new(), |e| readable.words(e.at.0)),
                 comment: v.comment.as_deref().unwrap_or("").to_owned(),
                 chart: chart.map(|c| c.name.text.to_string()),
-                from,
-                to,
+                at,
                 uses: counts.get(&*n.name.text).copied().unwrap_or(0).saturating_sub(1),
             }),
             Meaning::Step(c, s) => steps.push(Step {
@@ -89,8 +114,7 @@ pub(crate) fn tables(readable: &Readable) -> Tables {
                 chart: c.name.text.to_string(),
                 comment: s.comment.as_deref().unwrap_or("").to_owned(),
                 initial: s.initial,
-                from,
-                to,
+                at,
             }),
             Meaning::Chart(_) | Meaning::Other(..) => {}
         }
@@ -99,7 +123,7 @@ pub(crate) fn tables(readable: &Readable) -> Tables {
 }
 
 /// A declaration on one line, as it would stand in the text.
-pub(crate) fn declaration(name: &str, v: &VarDecl) -> String {
+pub fn declaration(name: &str, v: &VarDecl) -> String {
     let mut line = format!("{} {name} : {}", class(v.kind), v.ty);
     if v.init.is_some() && v.ty != Type::Bool {
         line.push_str(" := …");

@@ -11,13 +11,13 @@ use g7_model::Document;
 use crate::file::File;
 
 /// The change that a gesture would make.
-pub(crate) fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
+pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
     let stand = standing(&file.source.document);
     g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.to_string())
 }
 
 /// A part of a chart as text, with the places of its symbols.
-pub(crate) fn copy(file: &File, ids: &[ItemId]) -> String {
+pub fn copy(file: &File, ids: &[ItemId]) -> String {
     g7_edit::copy_placed(&file.as_edited(), ids, &standing(&file.source.document))
 }
 

@@ -2,31 +2,28 @@
 
 use g7_edit::{Gesture, ItemId, Row, Splice};
 use g7_model::{Problem, codes};
-use serde::Serialize;
 
 use crate::file::File;
 use crate::gestures::draft;
 use crate::ids::{self, Thing};
-use crate::positions::Change;
 
 /// A change that fixes a problem.
-#[derive(Debug, Serialize)]
-pub(crate) struct Fix {
-    title: String,
-    splices: Vec<Change>,
+#[derive(Debug)]
+pub struct Fix {
+    /// What it does.
+    pub title: String,
+    /// The change of the text.
+    pub splices: Vec<Splice>,
 }
 
-/// Number of problems for which gestures are tried as fixes; each costs a check of the whole file.
-pub(crate) const SOME: usize = 8;
-
 /// The fixes of a problem; gestures are tried only if `time` is true.
-pub(crate) fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
+pub fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
     let mut found: Vec<Fix> = suggested(file, p).into_iter().collect();
     if found.is_empty() && time && file.is_clean() {
         let gestures = gestures(file, p);
         found.extend(gestures.into_iter().filter_map(|(title, gesture)| {
             let edit = draft(file, &gesture).ok()?;
-            Some(Fix { title, splices: file.outward(&edit.splices) })
+            Some(Fix { title, splices: edit.splices })
         }));
     }
     found
@@ -50,7 +47,7 @@ fn suggested(file: &File, p: &Problem) -> Option<Fix> {
         return None;
     }
     let splice = Splice::new(start, range.end, word);
-    Some(Fix { title: format!("write `{word}`"), splices: file.outward(&[splice]) })
+    Some(Fix { title: format!("write `{word}`"), splices: vec![splice] })
 }
 
 /// Gestures that may fix the problem, each with its title.

@@ -1,0 +1,191 @@
+//! The outline of a file: its items, and what stands in them; and what can be folded.
+
+use std::ops::Range;
+
+use g7_model::{Chart, ChartItem, Document, Item, Name, Plant, PlantItem, Property, Span, VarDecl};
+
+use crate::file::Readable;
+use crate::tables::{class, declaration, kind};
+
+/// What an entry of the outline is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// A chart, an expansion or a task.
+    Chart,
+    /// A step.
+    Step,
+    /// A transition with a label.
+    Transition,
+    /// A variable or constant.
+    Variable,
+    /// A named action, transition section or function.
+    Function,
+    /// A plant.
+    Plant,
+    /// A test or property.
+    Test,
+}
+
+/// An entry of the outline.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Entry {
+    /// Its name.
+    pub name: String,
+    /// What it is.
+    pub kind: Kind,
+    /// Its comment or declaration; may be empty.
+    pub detail: String,
+    /// The bytes of the whole item.
+    pub range: Range<usize>,
+    /// The bytes of its name.
+    pub named: Range<usize>,
+    /// What stands in it.
+    pub inside: Vec<Entry>,
+}
+
+/// The outline of a text.
+pub fn outline(readable: &Readable) -> Vec<Entry> {
+    let document: &Document = &readable.document;
+    document.items.iter().flat_map(|item| entries(item, &readable.text)).collect()
+}
+
+fn entries(item: &Item, text: &str) -> Vec<Entry> {
+    match item {
+        Item::Var(v) => variables(v),
+        Item::Chart(c) => vec![chart(c)],
+        Item::Action(a) => {
+            vec![entry(&a.name, Kind::Function, a.comment.as_deref().unwrap_or("action"), a.at.0)]
+        }
+        Item::Section(s) => vec![entry(&s.name, Kind::Function, "transition section", s.at.0)],
+        Item::Function(f) => {
+            vec![entry(&f.name, Kind::Function, &format!("function : {}", f.result), f.at.0)]
+        }
+        Item::Plant(p) => vec![plant(p)],
+        Item::Test(t) => vec![titled(t.title.to_string(), t.at.0)],
+        Item::Prove(p) => vec![titled(first_line(p, text), p.at.0)],
+        Item::Profile(_)
+        | Item::Cycle(..)
+        | Item::Target(..)
+        | Item::Pre(..)
+        | Item::Post(..)
+        | Item::Layout(_) => Vec::new(),
+    }
+}
+
+/// A property has no name; its text stands for it.
+fn first_line(p: &Property, text: &str) -> String {
+    let words = text.get(range(p.at.0)).unwrap_or("prove");
+    words.lines().next().unwrap_or("prove").chars().take(80).collect()
+}
+
+fn chart(c: &Chart) -> Entry {
+    let inside = c.items.iter().flat_map(|item| match item {
+        ChartItem::Var(v) => variables(v),
+        ChartItem::Step(s) => {
+            let detail = s.comment.as_deref().unwrap_or(if s.initial { "initial step" } else { "step" });
+            vec![entry(&s.name, Kind::Step, detail, s.at.0)]
+        }
+        ChartItem::Transition(t) => {
+            let label = t.label.iter();
+            label.map(|l| entry(l, Kind::Transition, t.comment.as_deref().unwrap_or(""), t.at.0)).collect()
+        }
+        ChartItem::Action(a) => {
+            vec![entry(&a.name, Kind::Function, a.comment.as_deref().unwrap_or("action"), a.at.0)]
+        }
+        ChartItem::Section(s) => vec![entry(&s.name, Kind::Function, "transition section", s.at.0)],
+        ChartItem::Pre(..) | ChartItem::Post(..) => Vec::new(),
+    });
+    let own = entry(&c.name, Kind::Chart, c.comment.as_deref().unwrap_or(kind(c.kind)), c.at.0);
+    Entry { inside: inside.collect(), ..own }
+}
+
+fn plant(p: &Plant) -> Entry {
+    let inside = p.items.iter().flat_map(|item| match item {
+        PlantItem::Const { names, at, .. } => {
+            names.iter().map(|n| entry(n, Kind::Variable, "const", at.0)).collect()
+        }
+        PlantItem::State(s) => s.names.iter().map(|n| entry(n, Kind::Variable, "state", s.at.0)).collect(),
+        PlantItem::Parts(x) => vec![entry(&x.name, Kind::Variable, "parts", x.at.0)],
+        PlantItem::Arrivals(a) => vec![entry(&a.name, Kind::Variable, "arrivals", a.at.0)],
+        PlantItem::Rate(_)
+        | PlantItem::Drive(_)
+        | PlantItem::On(..)
+        | PlantItem::Each(..)
+        | PlantItem::View(_) => Vec::new(),
+    });
+    let own = entry(&p.name, Kind::Plant, p.comment.as_deref().unwrap_or("plant"), p.at.0);
+    Entry { inside: inside.collect::<Vec<_>>(), ..own }
+}
+
+fn variables(v: &VarDecl) -> Vec<Entry> {
+    let detail = |name: &Name| match &v.comment {
+        Some(comment) => comment.to_string(),
+        None => declaration(&name.text, v).trim_start_matches(class(v.kind)).trim().to_owned(),
+    };
+    v.names.iter().map(|n| entry(n, Kind::Variable, &detail(n), v.at.0)).collect()
+}
+
+fn entry(name: &Name, kind: Kind, detail: &str, at: Span) -> Entry {
+    let (range, named) = (range(at), range(name.at.0));
+    // A name lies inside its item, also where several names share a declaration.
+    let named = if range.start <= named.start && named.end <= range.end { named } else { range.clone() };
+    Entry { name: name.text.to_string(), kind, detail: detail.to_owned(), range, named, inside: Vec::new() }
+}
+
+fn titled(name: String, at: Span) -> Entry {
+    let name = if name.is_empty() { "test".to_owned() } else { name };
+    Entry {
+        name,
+        kind: Kind::Test,
+        detail: String::new(),
+        range: range(at),
+        named: range(at),
+        inside: Vec::new(),
+    }
+}
+
+fn range(span: Span) -> Range<usize> {
+    span.start as usize..span.end as usize
+}
+
+/// The parts of a text that an editor can fold: everything between braces, and notes in a row.
+pub fn folds(text: &str) -> Vec<Range<usize>> {
+    use g7_syntax::TokenKind;
+    let (mut open, mut folds) = (Vec::new(), Vec::new());
+    let mut notes: Option<Range<usize>> = None;
+    for t in g7_syntax::tokens(text) {
+        if t.kind == TokenKind::Note {
+            let joined = |n: &Range<usize>| text.get(n.end..t.start).is_some_and(|b| b.trim().is_empty());
+            notes = match notes.take() {
+                Some(n) if joined(&n) => Some(n.start..t.end),
+                other => {
+                    folds.extend(other);
+                    Some(t.start..t.end)
+                }
+            };
+            continue;
+        }
+        folds.extend(notes.take());
+        match t.kind {
+            TokenKind::LBrace => open.push(t.start),
+            TokenKind::RBrace => folds.extend(open.pop().map(|start| start..t.end)),
+            _ => {}
+        }
+    }
+    folds.extend(notes);
+    folds.retain(|f| text.get(f.clone()).is_some_and(|t| t.contains('\n')));
+    folds.sort_by_key(|f| f.start);
+    folds
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn braces_and_rows_of_notes_fold_if_they_have_several_lines() {
+        let text = "// a\n// b\nchart C {\n  step 1 { N V }\n}\n";
+        let folded: Vec<&str> = folds(text).into_iter().map(|r| &text[r]).collect();
+        assert_eq!(folded, ["// a\n// b", "{\n  step 1 { N V }\n}"]);
+    }
+}

@@ -1,0 +1,217 @@
+//! What the text view asks, in the form in which it is sent.
+
+use g7_ide::logic::{self, Tongue};
+use g7_ide::{File, completion, hover, references, search, tables, tokens};
+use serde::{Deserialize, Serialize};
+
+use crate::places::units;
+
+/// The possible words, and the place at which the word begins.
+#[derive(Debug, Serialize)]
+pub(crate) struct Completion {
+    from: usize,
+    items: Vec<Choice>,
+}
+
+#[derive(Debug, Serialize)]
+struct Choice {
+    label: String,
+    kind: &'static str,
+    detail: String,
+    insert: String,
+}
+
+pub(crate) fn complete(file: &File, at: usize) -> Completion {
+    let found = completion::complete(file, byte(file, at));
+    let choice =
+        |c: completion::Choice| Choice { label: c.label, kind: c.kind, detail: c.detail, insert: c.insert };
+    Completion {
+        from: file.positions.unit(file.text(), found.from),
+        items: found.items.into_iter().map(choice).collect(),
+    }
+}
+
+/// An explanation of a piece of the text.
+#[derive(Debug, Serialize)]
+pub(crate) struct Hover {
+    from: usize,
+    to: usize,
+    markdown: String,
+}
+
+pub(crate) fn hover(file: &File, at: usize) -> Option<Hover> {
+    let found = hover::hover(file, byte(file, at))?;
+    let (from, to) = units(file, &found.range);
+    Some(Hover { from, to, markdown: found.markdown })
+}
+
+/// A token: its place, and its class.
+pub(crate) type Coloured = (usize, usize, &'static str);
+
+pub(crate) fn tokens(file: &File, from: usize, to: usize) -> Vec<Coloured> {
+    let found = tokens::tokens(file, byte(file, from)..byte(file, to));
+    let coloured = |t: tokens::Coloured| {
+        let (from, to) = units(file, &t.range);
+        (from, to, t.class.name())
+    };
+    found.into_iter().map(coloured).collect()
+}
+
+/// All places that name the same part as the word at a place.
+pub(crate) fn references(file: &File, at: usize) -> Vec<(usize, usize)> {
+    references::uses(file, byte(file, at)).all.iter().map(|range| units(file, range)).collect()
+}
+
+/// A result of a search.
+#[derive(Debug, Serialize)]
+pub(crate) struct Hit {
+    from: usize,
+    to: usize,
+    line: usize,
+    text: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    id: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chart: Option<String>,
+}
+
+pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
+    let hit = |h: search::Hit| {
+        let (from, to) = units(file, &h.range);
+        Hit { from, to, line: h.line, text: h.text, id: h.id, chart: h.chart }
+    };
+    search::search(file, what).into_iter().map(hit).collect()
+}
+
+/// The tables of variables and steps.
+#[derive(Debug, Serialize)]
+pub(crate) struct Tables {
+    stale: bool,
+    variables: Vec<Variable>,
+    steps: Vec<Step>,
+}
+
+#[derive(Debug, Serialize)]
+struct Variable {
+    name: String,
+    class: &'static str,
+    #[serde(rename = "type")]
+    ty: String,
+    init: String,
+    address: String,
+    inverted: bool,
+    retain: bool,
+    safe: String,
+    comment: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    chart: Option<String>,
+    from: usize,
+    to: usize,
+    uses: usize,
+}
+
+#[derive(Debug, Serialize)]
+struct Step {
+    id: String,
+    name: String,
+    chart: String,
+    comment: String,
+    initial: bool,
+    from: usize,
+    to: usize,
+}
+
+pub(crate) fn tables(file: &File) -> Tables {
+    let readable = file.drawn();
+    let found = tables::tables(&readable);
+    let variable = |v: tables::Variable| {
+        let (from, to) = readable.units(v.at);
+        Variable {
+            name: v.name,
+            class: v.class,
+            ty: v.ty,
+            init: v.init,
+            address: v.address,
+            inverted: v.inverted,
+            retain: v.retain,
+            safe: v.safe,
+            comment: v.comment,
+            chart: v.chart,
+            from,
+            to,
+            uses: v.uses,
+        }
+    };
+    let step = |s: tables::Step| {
+        let (from, to) = readable.units(s.at);
+        Step { id: s.id, name: s.name, chart: s.chart, comment: s.comment, initial: s.initial, from, to }
+    };
+    Tables {
+        stale: found.stale,
+        variables: found.variables.into_iter().map(variable).collect(),
+        steps: found.steps.into_iter().map(step).collect(),
+    }
+}
+
+/// A language of controllers.
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Speech {
+    St,
+    Il,
+    Ld,
+}
+
+/// A piece of logic: the part of the symbol that it is, the number of the action in its step, and its
+/// text in each language.
+#[derive(Debug, Serialize)]
+pub(crate) struct Piece {
+    part: &'static str,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    index: Option<usize>,
+    forms: Vec<Form>,
+}
+
+#[derive(Debug, Serialize)]
+struct Form {
+    tongue: Speech,
+    text: Option<String>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    picture: Option<String>,
+}
+
+pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
+    let form = |f: logic::Form| Form {
+        tongue: match f.tongue {
+            Tongue::St => Speech::St,
+            Tongue::Il => Speech::Il,
+            Tongue::Ld => Speech::Ld,
+        },
+        text: f.text,
+        picture: f.picture,
+    };
+    let piece = |p: logic::Piece| Piece {
+        part: match p.part {
+            logic::Part::Receptivity => "receptivity",
+            logic::Part::Condition => "condition",
+            logic::Part::Event => "event",
+            logic::Part::Body => "body",
+        },
+        index: p.index,
+        forms: p.forms.into_iter().map(form).collect(),
+    };
+    Ok(logic::logic(file, id)?.into_iter().map(piece).collect())
+}
+
+pub(crate) fn logic_read(tongue: Speech, text: &str) -> Result<String, String> {
+    let tongue = match tongue {
+        Speech::St => Tongue::St,
+        Speech::Il => Tongue::Il,
+        Speech::Ld => Tongue::Ld,
+    };
+    logic::read(tongue, text)
+}
+
+fn byte(file: &File, unit: usize) -> usize {
+    file.positions.byte(file.text(), unit)
+}
