@@ -12,6 +12,8 @@ use g7_model::{FileId, Note, Problem, Span, codes};
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Tok {
     End,
+    /// The end of a line, made by the parser where a construct may not go on behind it.
+    Line,
     Word,
     /// A name in back-ticks.
     Ticked,

@@ -31,8 +31,8 @@ impl Parser<'_> {
                 return actions;
             }
             let start = self.cur.start;
-            let kind = match self.action() {
-                None if self.correct(&beginnings()) => self.action(),
+            let kind = match self.line(Parser::action) {
+                None if self.correct(&beginnings()) => self.line(Parser::action),
                 kind => kind,
             };
             match kind {
@@ -42,7 +42,7 @@ impl Parser<'_> {
                     }
                     actions.push(Action { kind, at: self.since(start).into() });
                 }
-                _ => actions.extend(self.lost_action(start)),
+                _ => actions.extend(self.line(|p| p.lost_action(start))),
             }
         }
     }
@@ -177,7 +177,12 @@ impl Parser<'_> {
                     self.slip(self.here(), "a time that is no number stands in parentheses", "write `(t)`");
                     return Some(self.expr());
                 }
-                self.slip(at, &format!("`{name}` needs a time"), format!("write `{name} 5s …`"));
+                let help = format!("write `{name} 5s …`");
+                if !matches!(self.cur.kind, Tok::Line | Tok::RBrace | Tok::End) {
+                    self.slip(at, &format!("`{name}` needs a time"), help);
+                } else {
+                    self.expected_help("a time and a variable", Some(&help));
+                }
             }
             Some(e) if !qualifier.timed() => {
                 let place = e.at.0;

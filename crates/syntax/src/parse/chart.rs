@@ -14,10 +14,11 @@ impl Parser<'_> {
             "task" => ChartKind::Task,
             _ => ChartKind::Chart,
         };
-        let start = self.bump().start;
-        let name = self.name("the name of the chart");
-        let comment = self.comment_if();
-        let every = self.period(kind);
+        let start = self.cur.start;
+        let (name, comment, every) = self.head(|p| {
+            p.bump();
+            (p.name("the name of the chart"), p.comment_if(), p.period(kind))
+        });
         let open = self.here();
         let mut items = Vec::new();
         if self.expect(Tok::LBrace, "`{` and the steps of the chart") || self.at_chart_start() {
@@ -67,16 +68,18 @@ impl Parser<'_> {
 
     fn chart_item(&mut self, items: &mut Vec<ChartItem>) -> bool {
         if self.at_transition() {
-            self.transitions(items);
+            self.line(|p| p.transitions(items));
             return true;
         }
         if let Some(kind) = self.var_kind() {
-            items.push(ChartItem::Var(self.variable(kind)));
+            items.push(ChartItem::Var(self.line(|p| p.variable(kind))));
             return true;
         }
         let start = self.cur.start;
         let item = match self.word() {
-            "initial" | "entry" | "exit" | "enclosing" | "step" | "macro" => ChartItem::Step(self.step()),
+            "initial" | "entry" | "exit" | "enclosing" | "step" | "macro" => {
+                ChartItem::Step(self.line(Parser::step))
+            }
             "pre" => {
                 self.bump();
                 let body = self.body();
@@ -87,8 +90,8 @@ impl Parser<'_> {
                 let body = self.body();
                 ChartItem::Post(body, self.since(start).into())
             }
-            "action" => ChartItem::Action(self.named_action()),
-            "transition" => ChartItem::Section(self.section()),
+            "action" => ChartItem::Action(self.line(Parser::named_action)),
+            "transition" => ChartItem::Section(self.line(Parser::section)),
             _ => return false,
         };
         items.push(item);
@@ -289,9 +292,9 @@ impl Parser<'_> {
             t.comment = self.comment_if();
         } else if t.priority.is_none() && self.eat_word("priority") {
             t.priority = Some(self.integer_u32("a number, 1 is first"));
-        } else if t.on_clearing.is_none() && self.at_word("on") && self.peek_word("clearing") {
-            self.bump();
-            self.bump();
+        } else if t.on_clearing.is_none() && self.at_two_words("on", "clearing") {
+            self.eat_word("on");
+            self.eat_word("clearing");
             self.eat(Tok::Colon);
             t.on_clearing = Some(self.block("`{` and the statements"));
         } else {

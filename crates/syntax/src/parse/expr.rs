@@ -141,6 +141,10 @@ impl Parser<'_> {
     }
 
     fn unary(&mut self) -> Tree {
+        if self.operand_over_line() {
+            self.operand_missing();
+            return self.no_tree();
+        }
         let outer = self.prefixes.len();
         loop {
             let op = match self.cur.kind {
@@ -155,7 +159,12 @@ impl Parser<'_> {
             self.prefixes.push((op, self.cur.start));
             self.bump();
         }
-        let mut tree = self.postfix();
+        let mut tree = if self.operand_over_line() {
+            self.operand_missing();
+            self.no_tree()
+        } else {
+            self.postfix()
+        };
         while self.prefixes.len() > outer
             && let Some((op, start)) = self.prefixes.pop()
         {
@@ -213,6 +222,10 @@ impl Parser<'_> {
 
     fn no_operand(&mut self) -> Tree {
         self.expected("an expression");
+        self.no_tree()
+    }
+
+    fn no_tree(&self) -> Tree {
         Tree { expr: Expr { kind: ExprKind::Bad, at: self.here().into() }, height: 1 }
     }
 

@@ -29,21 +29,23 @@ impl Parser<'_> {
 
     fn item(&mut self) -> Option<Item> {
         if let Some(kind) = self.var_kind() {
-            return Some(Item::Var(self.variable(kind)));
+            return Some(Item::Var(self.line(|p| p.variable(kind))));
         }
         let start = self.cur.start;
         Some(match self.word() {
-            "profile" => self.profile(),
+            "profile" => self.line(Parser::profile),
             "scan" => {
-                self.bump();
-                let time = self.duration("a duration");
+                let time = self.line(|p| {
+                    p.bump();
+                    p.duration("a duration")
+                });
                 Item::Cycle(time, self.since(start).into())
             }
-            "target" => self.target(),
+            "target" => self.line(Parser::target),
             "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
-            "action" => Item::Action(self.named_action()),
-            "transition" => Item::Section(self.section()),
-            "function" => Item::Function(self.function()),
+            "action" => Item::Action(self.line(Parser::named_action)),
+            "transition" => Item::Section(self.line(Parser::section)),
+            "function" => Item::Function(self.line(Parser::function)),
             "pre" => {
                 self.bump();
                 let body = self.body();
@@ -56,8 +58,8 @@ impl Parser<'_> {
             }
             "plant" => Item::Plant(self.plant()),
             "test" => Item::Test(self.test()),
-            "prove" => Item::Prove(self.property()),
-            "assume" => Item::Prove(self.assumption()),
+            "prove" => Item::Prove(self.line(Parser::property)),
+            "assume" => Item::Prove(self.line(Parser::assumption)),
             "layout" => Item::Layout(self.layout()),
             _ => return None,
         })
@@ -111,7 +113,7 @@ impl Parser<'_> {
         if self.eat(Tok::LBrace) {
             while !matches!(self.cur.kind, Tok::RBrace | Tok::End) && !self.at_file_start() {
                 let at = self.cur.start;
-                if let Some(switch) = self.switch() {
+                if let Some(switch) = self.line(Parser::switch) {
                     switches.push((switch, self.since(at).into()));
                 }
                 if !self.eat(Tok::Comma) {

@@ -31,14 +31,18 @@ impl Parser<'_> {
         let mut locals = Vec::new();
         self.skip_semis();
         while self.at_word("var") {
-            let start = self.bump().start;
-            let names = self.names("the name of a variable");
-            let ty = self.typed();
-            let init = self.initial_value();
-            locals.push(Local { names, ty, init, at: self.since(start).into() });
+            locals.push(self.line(Parser::local));
             self.skip_semis();
         }
         locals
+    }
+
+    fn local(&mut self) -> Local {
+        let start = self.bump().start;
+        let names = self.names("the name of a variable");
+        let ty = self.typed();
+        let init = self.initial_value();
+        Local { names, ty, init, at: self.since(start).into() }
     }
 
     /// `st { … }`, `{ … }`, `il { … }` or `ld { … }`.
@@ -164,7 +168,7 @@ impl Parser<'_> {
     }
 
     fn statement(&mut self) -> Option<StmtKind> {
-        let Some(word) = self.st_word() else { return self.simple_statement() };
+        let Some(word) = self.st_word() else { return self.statement_line(Parser::simple_statement) };
         let nesting = matches!(word, St::If | St::Case | St::For | St::While | St::Repeat);
         if !nesting {
             self.bump();

@@ -1,7 +1,7 @@
 //! Declarations of variables, and types.
 
 use super::Parser;
-use crate::lexer::Tok;
+use crate::lexer::{Tok, Token};
 use crate::words;
 use g7_iec::constant;
 use g7_model::{Expr, Name, Param, Problem, Type, VarDecl, VarKind, codes};
@@ -50,11 +50,13 @@ impl Parser<'_> {
             decl.comment = self.comment_if();
             return true;
         }
+        let token = self.behind_line_end().unwrap_or(self.cur);
+        let word = self.slice(token);
         // In a chart, a step may have the name of one of these words.
-        let word = self.word();
-        if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition() {
+        if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition(token) {
             return false;
         }
+        self.pass_line_end();
         let at = self.here();
         let (fits, where_to) = match word {
             "at" => (decl.kind != VarKind::Const, "`input`, `output` or `var`"),
@@ -76,8 +78,8 @@ impl Parser<'_> {
         true
     }
 
-    fn before_transition(&mut self) -> bool {
-        matches!(self.peek().kind, Tok::Arrow | Tok::Colon)
+    fn before_transition(&self, token: Token) -> bool {
+        matches!(self.lexer.ahead(token).token().kind, Tok::Arrow | Tok::Colon | Tok::Output)
     }
 
     /// `%I0.0`, a number, a name or a text.
