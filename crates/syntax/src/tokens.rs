@@ -145,6 +145,7 @@ fn public(kind: Tok) -> Option<TokenKind> {
         | Tok::Prime
         | Tok::Overline
         | Tok::Hash
+        | Tok::Percent
         | Tok::Bad => TokenKind::Sign,
     })
 }

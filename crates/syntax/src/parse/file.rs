@@ -4,8 +4,8 @@ use super::Parser;
 use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
-    Block, Document, Expr, ExprKind, Function, Item, Name, NamedAction, Path, Problem, Profile, ProfileName,
-    Section, Stmt, StmtKind, Switch, TargetPlc, codes,
+    Block, Document, Expr, ExprKind, Fix, Function, Item, Name, NamedAction, Path, Problem, Profile,
+    ProfileName, Section, Stmt, StmtKind, Switch, TargetPlc, codes,
 };
 
 impl Parser<'_> {
@@ -70,11 +70,18 @@ impl Parser<'_> {
         let at = self.here();
         let word = self.word();
         if self.at(Tok::RBrace) {
-            self.problem(&codes::UNCLOSED, at, "this `}` closes nothing");
+            let help = "delete it, or write the bracket that it closes";
+            self.problem_help(&codes::UNCLOSED, at, "this `}` closes nothing", help);
             self.bump();
             return;
         }
-        if self.at_chart_start() {
+        if self.foreign_block(word) {
+            return;
+        }
+        if self.at(Tok::Minus) && self.peek().kind == Tok::Minus {
+            let what = "a note to the reader does not begin with `--`";
+            self.problem_help(&codes::BAD_CHARACTER, at, what, "write `//`");
+        } else if self.at_chart_start() {
             let help = "write it between the braces of a chart: `chart Main { … }`";
             self.problem_help(&codes::EXPECTED, at, "steps and transitions stand in a chart", help);
         } else if !word.is_empty() {
@@ -96,6 +103,26 @@ impl Parser<'_> {
         if self.at(Tok::RBrace) {
             self.bump();
         }
+    }
+
+    /// Tells of a block of declarations as IEC 61131-3 has them, and passes it.
+    fn foreign_block(&mut self, word: &str) -> bool {
+        let item = match word.to_ascii_uppercase().as_str() {
+            "VAR_INPUT" => "input",
+            "VAR_OUTPUT" => "output",
+            "VAR" | "VAR_GLOBAL" | "VAR_EXTERNAL" | "VAR_TEMP" | "VAR_IN_OUT" => "var",
+            _ => return false,
+        };
+        let at = self.here();
+        let what = format!("variables are declared one a line, without `{word}` and `END_VAR`");
+        self.problem_help(&codes::UNKNOWN_WORD, at, &what, &format!("write `{item} a : BOOL`"));
+        while !self.at(Tok::End) && !self.word().eq_ignore_ascii_case("END_VAR") && !self.at_file_start() {
+            self.bump();
+        }
+        if self.word().eq_ignore_ascii_case("END_VAR") {
+            self.bump();
+        }
+        true
     }
 
     fn profile(&mut self) -> Item {
@@ -136,10 +163,10 @@ impl Parser<'_> {
         let near = words::similar(word, list);
         self.report(at, || {
             let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is not {what}"));
-            problem.help(match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("there are {}", list.join(", ")),
-            })
+            match near {
+                Some(near) => problem.meant(near),
+                None => problem.help(format!("there are {}", list.join(", "))),
+            }
         });
         self.bump();
     }
@@ -168,10 +195,13 @@ impl Parser<'_> {
             let near = words::similar(text, &names);
             self.lexer.problems.add(at, || {
                 let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no switch `{text}`"));
-                problem.help(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("there are {} and bound", names.join(", ")),
-                })
+                match near {
+                    Some(near) => {
+                        let problem = problem.help(format!("did you mean `{near}`?"));
+                        problem.fix(Fix::sure(format!("write `{near}`"), at, near))
+                    }
+                    None => problem.help(format!("there are {} and bound", names.join(", "))),
+                }
             });
         }
         found.map(|(_, switch)| *switch)

@@ -24,10 +24,16 @@ use crate::lexer::{Lexer, Tok, Token};
 use crate::quote;
 use crate::words;
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Name, Problem, Span, UnaryOp};
+use g7_model::{FileId, Fix, Name, Problem, Span, UnaryOp};
 
 /// The deepest nesting of brackets, blocks and operands.
 const MOST_NESTED: u32 = 128;
+
+/// A problem at whose place this text was surely meant.
+fn meant(problem: Problem, text: &str) -> Problem {
+    let (at, help) = (problem.at, format!("write `{text}`"));
+    problem.help(help.clone()).fix(Fix::sure(help, at, text))
+}
 
 /// The parser: the current token, and at most one read ahead.
 pub(crate) struct Parser<'a> {
@@ -165,7 +171,10 @@ impl<'a> Parser<'a> {
         let Some(near) = words::similar(word, list).filter(|_| follows) else { return false };
         self.report(at, || {
             let what = format!("`{word}` is no word of the language here");
-            Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"))
+            let problem =
+                Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"));
+            // The rest of the text fits the word, and it is read as such.
+            problem.fix(Fix::sure(format!("write `{near}`"), at, near))
         });
         self.corrected = Some((at.start, near));
         true
@@ -221,6 +230,11 @@ impl<'a> Parser<'a> {
         Span { file: self.file, start: token.start, end: token.end }
     }
 
+    /// The text at a place.
+    fn text_at(&self, at: Span) -> &'a str {
+        self.text.get(at.start as usize..at.end as usize).unwrap_or_default()
+    }
+
     /// From a byte to the end of the last token read.
     fn since(&self, start: u32) -> Span {
         Span { file: self.file, start, end: self.prev.end.max(start) }
@@ -260,6 +274,14 @@ impl<'a> Parser<'a> {
             return;
         }
         self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what).help(help));
+    }
+
+    /// Reports a slip for which this text was meant.
+    fn slip_to(&mut self, at: Span, what: &str, text: &str) {
+        if self.silent() {
+            return;
+        }
+        self.lexer.problems.add(at, || meant(Problem::new(&codes::EXPECTED, at, what), text));
     }
 
     /// The current token, in words.
@@ -341,7 +363,9 @@ impl<'a> Parser<'a> {
             let (at, words) = self.expected_words(sign);
             let open_sign = self.text.get(open.start as usize..open.end as usize).unwrap_or_default();
             self.report(at, || {
-                Problem::new(&codes::UNCLOSED, at, words).related(open, format!("`{open_sign}` stands here"))
+                Problem::new(&codes::UNCLOSED, at, words)
+                    .related(open, format!("`{open_sign}` stands here"))
+                    .help("each bracket that is opened has to be closed")
             });
         }
         if !here {
@@ -468,6 +492,7 @@ impl<'a> Parser<'a> {
                 | Tok::Assign
                 | Tok::Comment
         );
+        let fits = fits || self.peek().newline;
         if !fits || self.cur.newline && self.prev.kind != Tok::Bad {
             let help = format!("`{word}` is a word of the language; as a name it stands in back-ticks");
             self.expected_help(what, Some(&help));

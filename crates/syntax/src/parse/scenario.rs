@@ -76,8 +76,11 @@ impl Parser<'_> {
         if self.at_name() && matches!(self.peek().kind, Tok::Assign | Tok::Eq) {
             self.unexpected("a statement of a test", Some("inputs are moved by `set a := TRUE`"));
         } else {
-            let list = words::TEST.join(", ");
-            self.unexpected(&format!("a statement of a test: {list}"), None);
+            let help = match self.word() {
+                "assert" | "check" | "verify" => "a condition is asked by `expect a`".into(),
+                _ => format!("there are {}", words::TEST.join(", ")),
+            };
+            self.unexpected("a statement of a test", Some(&help));
         }
         if self.cur.start == start {
             self.bump();
@@ -161,6 +164,10 @@ impl Parser<'_> {
 
     fn wait(&mut self) -> TestStmtKind {
         self.bump();
+        if self.st_word() == Some(St::For) {
+            self.slip(self.here(), "`wait` takes its duration alone", "leave out `for`");
+            self.bump();
+        }
         if !self.eat_st(St::Until) {
             return TestStmtKind::Wait(self.duration("a duration or `until`"));
         }
