@@ -261,21 +261,36 @@ impl Parser<'_> {
 
     /// Tells of a blank or another sign in a name, and passes the rest of it.
     fn broken_name(&mut self, name: &Name) {
-        let start = name.at.0.start;
-        let next = self.peek();
-        let dashed = self.at(Tok::Minus) && matches!(next.kind, Tok::Word | Tok::Int) && !next.newline;
-        if name.text.is_empty() || !self.at_name() && !dashed || self.cur.newline {
+        let part = |kind: Tok| matches!(kind, Tok::Word | Tok::Int | Tok::Minus);
+        if name.text.is_empty() || self.cur.newline || !self.at_name() && !self.at(Tok::Minus) {
             return;
         }
-        while !self.cur.newline && (self.at_name() || self.at(Tok::Minus)) {
+        // A transition can follow on the line; then the word is no part of the name.
+        let mut ahead = self.lexer.ahead(self.cur);
+        let mut end = ahead.token();
+        let mut length = 1;
+        while part(end.kind) && !end.newline {
+            length += 1;
+            end = ahead.token();
+        }
+        let over = end.newline || matches!(end.kind, Tok::LBrace | Tok::Comment | Tok::RBrace | Tok::End);
+        if !over || self.word_of_chart() {
+            return;
+        }
+        for _ in 0..length {
             self.bump();
         }
-        let at = self.since(start);
+        let at = self.since(name.at.0.start);
         let text = self.text_at(at);
         self.lexer.problems.add(at, || {
             Problem::new(&codes::EXPECTED, at, "a name with a blank or another sign stands in back-ticks")
                 .help(format!("write `` `{text}` `` or `{}`", text.replace([' ', '-'], "_")))
         });
+    }
+
+    /// True at a word that can begin an item of a chart.
+    fn word_of_chart(&self) -> bool {
+        words::CHART.contains(&self.word())
     }
 
     fn macro_step(&mut self, start: u32, initial: bool, kind: &StepKind) -> Step {
