@@ -8,16 +8,16 @@ use crate::{FileId, Span};
 /// New text in the place of a span; an empty span is a place where text is put in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextEdit {
-    /// What goes away.
+    /// The bytes that go away.
     pub at: Span,
-    /// What comes in its place; may be empty.
+    /// The text that comes in their place; may be empty.
     pub text: String,
 }
 
 /// One way to solve a problem: all its edits belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
-    /// What it does, as an order: ``write `step` ``. Lower case, no full stop, names in back-ticks.
+    /// Its effect, as an order: ``write `step` ``. Lower case, no full stop, names in back-ticks.
     pub label: String,
     /// The edits; they do not overlap, and none is in another file than the problem.
     pub edits: Vec<TextEdit>,
