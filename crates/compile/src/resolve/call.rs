@@ -61,7 +61,7 @@ impl Resolver<'_, '_> {
                     Problem::new(&codes::UNKNOWN_NAME, at, format!("there is no function `{text}`"));
                 let own = self.unit.functions.iter().map(|f| &*f.name);
                 match nearest(&text, own.chain(StandardFunction::ALL.into_iter().map(|f| f.row().name))) {
-                    Some(n) => problem.help(format!("did you mean `{n}`?")),
+                    Some(n) => problem.meant(n),
                     None => problem,
                 }
             }

@@ -274,7 +274,9 @@ impl Resolver<'_, '_> {
         if let Some(base) = self.overlined(name, chart) {
             problem.help = Some(format!("write `not {base}`, `{base}'` or `/{base}`"));
         } else if self.may_guess() {
-            problem.help = self.guess(name, home.as_deref()).map(|n| format!("did you mean `{n}`?"));
+            if let Some(near) = self.guess(name, home.as_deref()) {
+                problem = problem.meant(&near);
+            }
         }
         problem
     }

@@ -1,8 +1,8 @@
 //! Structured Text: statements, targets and blocks with their own variables.
 
 use g7_model::{
-    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Name, Path, Problem, Span, Stmt as WrittenStmt,
-    StmtKind as Statement, Type, Work, codes,
+    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Fix, Name, Path, Problem, Span,
+    Stmt as WrittenStmt, StmtKind as Statement, Type, Work, codes,
 };
 
 use super::refer::Ref;
@@ -250,8 +250,9 @@ impl Resolver<'_, '_> {
         };
         if low > high {
             let what = format!("the range {low} .. {high} holds nothing");
-            return self
-                .report(Problem::new(&codes::EMPTY_RANGE, at, what).help(format!("write {high} .. {low}")));
+            let order = format!("write {high} .. {low}");
+            let fix = Fix::likely(order.clone(), at, format!("{high}..{low}"));
+            return self.report(Problem::new(&codes::EMPTY_RANGE, at, what).help(order).fix(fix));
         }
         Some((low, high, at))
     }

@@ -4,8 +4,8 @@ use super::Parser;
 use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
-    Block, Document, Expr, ExprKind, Function, Item, Name, NamedAction, Path, Problem, Profile, ProfileName,
-    Section, Stmt, StmtKind, Switch, TargetPlc, codes,
+    Block, Document, Expr, ExprKind, Fix, Function, Item, Name, NamedAction, Path, Problem, Profile,
+    ProfileName, Section, Stmt, StmtKind, Switch, TargetPlc, codes,
 };
 
 impl Parser<'_> {
@@ -134,10 +134,10 @@ impl Parser<'_> {
         let near = words::similar(word, list);
         self.report(at, || {
             let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is not {what}"));
-            problem.help(match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("there are {}", list.join(", ")),
-            })
+            match near {
+                Some(near) => problem.meant(near),
+                None => problem.help(format!("there are {}", list.join(", "))),
+            }
         });
         self.bump();
     }
@@ -166,10 +166,13 @@ impl Parser<'_> {
             let near = words::similar(text, &names);
             self.lexer.problems.add(at, || {
                 let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no switch `{text}`"));
-                problem.help(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("there are {} and bound", names.join(", ")),
-                })
+                match near {
+                    Some(near) => {
+                        let problem = problem.help(format!("did you mean `{near}`?"));
+                        problem.fix(Fix::sure(format!("write `{near}`"), at, near))
+                    }
+                    None => problem.help(format!("there are {} and bound", names.join(", "))),
+                }
             });
         }
         found.map(|(_, switch)| *switch)

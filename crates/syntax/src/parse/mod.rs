@@ -22,7 +22,7 @@ use crate::quote;
 use crate::words;
 use g7_iec::constant;
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Name, Nanos, Problem, Span, UnaryOp};
+use g7_model::{FileId, Fix, Name, Nanos, Problem, Span, UnaryOp};
 
 /// The deepest nesting of brackets, blocks and operands.
 const MOST_NESTED: u32 = 128;
@@ -143,7 +143,10 @@ impl<'a> Parser<'a> {
         let Some(near) = words::similar(word, list).filter(|_| follows) else { return false };
         self.report(at, || {
             let what = format!("`{word}` is no word of the language here");
-            Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"))
+            let problem =
+                Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"));
+            // The rest of the text fits the word, and it is read as such.
+            problem.fix(Fix::sure(format!("write `{near}`"), at, near))
         });
         self.corrected = Some((at.start, near));
         true
