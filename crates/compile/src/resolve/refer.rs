@@ -273,10 +273,10 @@ impl Resolver<'_, '_> {
         let mut problem = Problem::new(&codes::UNKNOWN_NAME, at, what);
         if let Some(base) = self.overlined(name, chart) {
             problem.help = Some(format!("write `not {base}`, `{base}'` or `/{base}`"));
-        } else if self.may_guess() {
-            if let Some(near) = self.guess(name, home.as_deref()) {
-                problem = problem.meant(&near);
-            }
+        } else if self.may_guess()
+            && let Some(near) = self.guess(name, home.as_deref())
+        {
+            problem = problem.meant(&near);
         }
         problem
     }
