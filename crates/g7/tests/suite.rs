@@ -1,5 +1,6 @@
 //! `g7 test` with many files: lists, limits, what is counted, reports.
 #![allow(missing_docs, reason = "a test")]
+#![allow(clippy::disallowed_methods, reason = "a test that measures")]
 
 mod common;
 

@@ -301,7 +301,7 @@ mod tests {
         let left = |name: &str, old: bool| {
             let file = File::create(folder.0.join(name)).unwrap();
             if old {
-                file.set_modified(std::time::SystemTime::now() - YOUNG * 2).unwrap();
+                file.set_modified(std::time::UNIX_EPOCH).unwrap();
             }
             file
         };
