@@ -3,7 +3,7 @@
 
 use g7_model::{Problem, Severity};
 
-use super::Checked;
+use super::checked::Checked;
 use crate::sources::Source;
 
 /// A line for each problem.

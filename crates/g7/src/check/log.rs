@@ -6,7 +6,7 @@ use g7_model::codes::{self, Code};
 use g7_model::{Fix, Problem, Severity, Span};
 use serde_json::{Value, json};
 
-use super::Checked;
+use super::checked::Checked;
 use crate::sarif::{artifact, log};
 use crate::sources::Source;
 

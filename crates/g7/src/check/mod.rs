@@ -5,6 +5,7 @@
 //! ```
 
 mod annotations;
+mod checked;
 mod fixes;
 mod log;
 mod watch;
@@ -13,7 +14,6 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use g7_model::{Item, Place, Problem, Span, codes};
-use g7_rig::testing::Unproved;
 use serde_json::json;
 
 use crate::cli::{Check, Fixing, Report};
@@ -23,15 +23,7 @@ use crate::progress::Progress;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
 use crate::{files, style};
-
-/// A file with what was found in it.
-struct Checked {
-    source: Source,
-    problems: Vec<Problem>,
-    unproved: Vec<Unproved>,
-    /// Why it is no chart; then this is its only problem.
-    no_form: Option<String>,
-}
+use checked::Checked;
 
 pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     if args.fix.is_some() && args.paths.iter().any(|p| p == Path::new("-")) {
