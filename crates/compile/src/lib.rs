@@ -9,6 +9,7 @@
 //! document are reported, not only the first.
 #![forbid(unsafe_code)]
 
+mod allow;
 pub mod check;
 mod circles;
 pub mod ir;
@@ -20,7 +21,7 @@ mod stages;
 pub mod symbols;
 pub mod tree;
 
-use g7_model::{Document, Problem};
+use g7_model::{Document, Problem, Span, codes};
 
 pub use references::{Definition, References, references};
 pub use stages::{Compiled, compile, compile_as, compile_with};
@@ -33,6 +34,12 @@ pub fn check(doc: &Document) -> Vec<Problem> {
         for plant in plant::plants(doc) {
             problems.extend(plant::compile_plant(doc, plant, &charts, &[]).1);
         }
+    }
+    if doc.items.is_empty() && problems.is_empty() {
+        let file = doc.notes.first().map(|n| n.at.file).unwrap_or_default();
+        let what = "there is nothing in this file";
+        let help = "a chart begins with `chart Main { … }`; `g7 new` writes one";
+        problems.push(Problem::new(&codes::EMPTY_FILE, Span { file, start: 0, end: 0 }, what).help(help));
     }
     stages::sorted(problems)
 }

@@ -9,7 +9,7 @@ use g7_engine::{Code, Program};
 use g7_model::{Document, Expr, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes};
 
 use crate::symbols::Symbols;
-use crate::{check, ir, lower, resolve};
+use crate::{allow, check, ir, lower, resolve};
 
 /// A document that can be run.
 #[derive(Clone, Debug)]
@@ -54,8 +54,14 @@ pub fn compile_with(
         problems.append(&mut wrong);
     }
     problems.append(&mut properties(doc, &mut unit, &mut scopes));
-    let judged = clear(check::check(doc, &unit), &problems);
+    let judged = clear(check::check(doc, &unit), &problems, unread(doc));
     problems.extend(judged);
+    if problems.iter().any(|p| p.severity() == Severity::Error) || !unread(doc).is_empty() {
+        // A part with an error may be the one that reads the input or leaves the step.
+        let loose = [&codes::DEAD_END, &codes::NEVER_JOINS, &codes::INPUT_UNREAD, &codes::OUTPUT_UNDRIVEN];
+        problems.retain(|p| !loose.contains(&p.code));
+    }
+    allow::apply(doc, &mut problems);
     let failed = problems.iter().any(|p| p.severity() == Severity::Error);
     if failed || questions.len() < queries.len() {
         return (None, sorted(problems));
@@ -106,7 +112,7 @@ fn reads_input(unit: &ir::Unit, e: &ir::Expr) -> bool {
 /// Drops follow-up problems of parts that failed to resolve. An unresolved expression stands for
 /// FALSE and must not be checked as if the author had written that; and where a transition or a
 /// nesting was left out, unreachable steps follow from it.
-fn clear(mut found: Vec<Problem>, unresolved: &[Problem]) -> Vec<Problem> {
+fn clear(mut found: Vec<Problem>, unresolved: &[Problem], unread: Vec<Span>) -> Vec<Problem> {
     let errors = || unresolved.iter().filter(|p| p.severity() == Severity::Error);
     let gaps = [
         &codes::UNKNOWN_STEP,
@@ -122,13 +128,19 @@ fn clear(mut found: Vec<Problem>, unresolved: &[Problem]) -> Vec<Problem> {
         let loose = [&codes::UNREACHABLE, &codes::NEVER_STARTS, &codes::CHART_UNUSED];
         found.retain(|p| !loose.contains(&p.code));
     }
-    let mut unclear: Vec<Span> = errors().map(|p| p.at).collect();
+    let mut unclear: Vec<Span> = errors().map(|p| p.at).chain(unread).collect();
     unclear.sort_unstable();
     found.retain(|p| {
         let from = unclear.partition_point(|e| (e.file, e.start) < (p.at.file, p.at.start));
         unclear.get(from).is_none_or(|e| e.file != p.at.file || e.end > p.at.end)
     });
     found
+}
+
+/// The places of the receptivities that could not be read.
+fn unread(doc: &Document) -> Vec<Span> {
+    let transitions = doc.charts().flat_map(|c| c.transitions());
+    transitions.filter(|t| !t.receptivity.is_read()).map(|t| t.receptivity.at.0).collect()
 }
 
 /// Sorts by place; problems at one place keep the order in which they were found.

@@ -60,6 +60,28 @@ pub(crate) enum Format {
     Json,
 }
 
+/// The format of problems.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Report {
+    /// For people.
+    Text,
+    /// For programs: one JSON object.
+    Json,
+    /// For code review: a log of SARIF 2.1.0.
+    Sarif,
+    /// For workflows of GitHub: annotations of the lines.
+    Github,
+}
+
+/// The fixes that are applied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Fixing {
+    /// Those of which nothing else can have been meant.
+    Sure,
+    /// Also those that are only likely.
+    Likely,
+}
+
 /// The format of answers.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Answers {
@@ -141,7 +163,9 @@ Examples:
   g7 check                          every .g7 file in this folder and below
   g7 check tank/chart.g7            one file
   g7 check --target tsx3720 tank    against the limits of a PLC as well
-  g7 check --format json tank       for a program to read
+  g7 check --watch tank             again whenever a file changes
+  g7 check --fix tank               solves what has a sure solution
+  g7 check --format json tank       for a program to read; sarif, github: for code review
   g7 check - < chart.g7             the standard input
 
 {EXIT_CODES}"))]
@@ -150,14 +174,20 @@ pub(crate) struct Check {
     #[arg(default_value = ".")]
     pub(crate) paths: Vec<PathBuf>,
     /// Also check the limits of this PLC.
-    #[arg(long, value_parser = values::target, value_name = "PLC")]
+    #[arg(long, value_parser = values::targets(), value_name = "PLC")]
     pub(crate) target: Option<TargetPlc>,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     pub(crate) profile: Option<ProfileName>,
-    /// For people or for programs.
-    #[arg(long, value_enum, default_value_t = Format::Text)]
-    pub(crate) format: Format,
+    /// For people, for programs, for code review or for workflows.
+    #[arg(long, value_enum, default_value_t = Report::Text)]
+    pub(crate) format: Report,
+    /// Solve what has a sure solution, and write the files; `--fix=likely` takes what is likely too.
+    #[arg(long, value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "sure", value_name = "WHICH")]
+    pub(crate) fix: Option<Fixing>,
+    /// Check again whenever a file changes.
+    #[arg(long, short)]
+    pub(crate) watch: bool,
     /// Count warnings as errors.
     #[arg(long)]
     pub(crate) strict: bool,
@@ -168,6 +198,7 @@ pub(crate) struct Check {
 Examples:
   g7 fmt                    every .g7 file in this folder and below
   g7 fmt --check tank       only say which files would change
+  g7 fmt --check --diff     and show how
   g7 fmt - < chart.g7       from the standard input to the standard output
 
 A file with syntax errors is left as it is. A file is written whole or not at all.
@@ -180,6 +211,9 @@ pub(crate) struct Fmt {
     /// Write nothing; exit with 1 if a file would change.
     #[arg(long)]
     pub(crate) check: bool,
+    /// Write nothing; show what would change, as `diff -u` does.
+    #[arg(long)]
+    pub(crate) diff: bool,
 }
 
 #[derive(Args, Debug)]
@@ -213,7 +247,7 @@ pub(crate) struct Run {
     #[arg(conflicts_with = "online", long = "set", value_parser = values::assign, value_name = "NAME=VALUE@TIME")]
     pub(crate) set: Vec<Assign>,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     pub(crate) profile: Option<ProfileName>,
     /// Time between scans, instead of the file's own (10ms).
     #[arg(long, value_parser = values::duration, value_name = "TIME")]
@@ -241,6 +275,9 @@ pub(crate) struct Run {
     /// With --headless: record everything that enters the charts, for --replay.
     #[arg(conflicts_with = "online", long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
+    /// With --trace and --record: replace a file that g7 did not write; never the chart itself.
+    #[arg(conflicts_with = "online", long)]
+    pub(crate) force: bool,
     #[command(flatten)]
     pub(crate) drive: Drive,
     /// Replay a record and check that every state is the same.
@@ -253,6 +290,8 @@ pub(crate) struct Run {
 Examples:
   g7 test                         the tests of every .g7 file in this folder and below
   g7 test tank --filter bottles   only tests with `bottles` in the title
+  g7 test tank --list             their titles
+  g7 test tank --fail-fast        only up to the first that fails
   g7 test tank --coverage         which steps, transitions, actions no test reached
   g7 test tank --junit out.xml    for a build server
 
@@ -270,11 +309,26 @@ pub(crate) struct Test {
     /// Write a JUnit report.
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
+    /// With --junit: replace a file that g7 did not write.
+    #[arg(long)]
+    pub(crate) force: bool,
+    /// Only list the tests.
+    #[arg(long, conflicts_with_all = ["coverage", "junit"])]
+    pub(crate) list: bool,
+    /// How many files are tested at a time [default: as many as there are processors].
+    #[arg(long, short, value_name = "NUMBER", value_parser = clap::value_parser!(u16).range(1..=256))]
+    pub(crate) jobs: Option<u16>,
+    /// Run no more tests behind the first that fails.
+    #[arg(long)]
+    pub(crate) fail_fast: bool,
+    /// End a test that takes more real time than this: it has failed.
+    #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
+    pub(crate) timeout: Nanos,
     /// For people or for programs.
     #[arg(long, value_enum, default_value_t = Format::Text)]
     pub(crate) format: Format,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     pub(crate) profile: Option<ProfileName>,
     /// Time between scans, instead of the file's own (10ms).
     #[arg(long, value_parser = values::duration, value_name = "TIME")]
@@ -316,7 +370,7 @@ pub(crate) struct Prove {
     #[arg(long)]
     pub(crate) all: bool,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     pub(crate) profile: Option<ProfileName>,
     /// Ask everything of the closed loop of charts and this plant.
     #[arg(long, value_name = "PLANT", conflicts_with = "tests")]
@@ -341,7 +395,7 @@ pub(crate) struct Prove {
     /// branch that can be reached, for you to confirm.
     #[arg(long, value_name = "FILE")]
     pub(crate) tests: Option<PathBuf>,
-    /// With --save and --tests: replace a file that is there and is not the chart's own.
+    /// With --save, --tests and --junit: replace a file that is there and is not the chart's own.
     #[arg(long)]
     pub(crate) force: bool,
     /// For people (if nothing is said), for programs or for code review.
@@ -397,7 +451,7 @@ pub(crate) struct Compare {
     #[arg(required = true, num_args = 1..=2)]
     pub(crate) files: Vec<PathBuf>,
     /// Two profiles, for the first and the second chart.
-    #[arg(long, value_parser = values::profile, value_delimiter = ',', value_name = "PROFILES")]
+    #[arg(long, value_parser = values::profiles(), value_delimiter = ',', value_name = "PROFILES")]
     pub(crate) profiles: Vec<ProfileName>,
     /// Compare situations as well as outputs.
     #[arg(long)]
@@ -406,6 +460,9 @@ pub(crate) struct Compare {
     /// signal is 1 where they differ.
     #[arg(long, value_name = "FILE")]
     pub(crate) aiger: Option<PathBuf>,
+    /// With --aiger: replace a file that is there; never one of the charts.
+    #[arg(long)]
+    pub(crate) force: bool,
     /// Stop after this time.
     #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = TIME)]
     pub(crate) time: Nanos,
@@ -426,6 +483,7 @@ impl Compare {
             profiles: Vec::new(),
             situations: false,
             aiger: None,
+            force: false,
             time,
             memory: MEMORY,
             states: STATES,
@@ -464,6 +522,7 @@ Examples:
   g7 explain            every code with its title")]
 pub(crate) struct Explain {
     /// The code, as in `error[G0101]`.
+    #[arg(value_parser = values::problem_codes(), hide_possible_values = true)]
     pub(crate) code: Option<String>,
 }
 

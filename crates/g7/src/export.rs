@@ -90,7 +90,9 @@ pub(crate) type ReadBack = fn(sources::Source, sources::Source) -> Result<Verdic
 
 pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Failure> {
     let to = form(args)?;
-    let source = sources::load(&files::one(&args.file)?, 0)?;
+    let path = files::one(&args.file)?;
+    let source = sources::load(&path, 0)?;
+    files::refuse_source(args.output.as_deref(), &[&path])?;
     files::refuse_present(args.output.as_deref(), args.force)?;
     if args.compare && !to.is_read() {
         return Err(Failure::Usage(format!(

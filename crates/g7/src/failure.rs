@@ -15,6 +15,9 @@ pub(crate) enum Failure {
     /// The standard output cannot be written.
     #[error("cannot write to the standard output: {}", plain(.0))]
     Output(#[from] io::Error),
+    /// A file that is no chart: its name, and why.
+    #[error("{name}: {why}")]
+    Form { name: String, why: String },
     /// An error that the user can correct.
     #[error("{0}")]
     Usage(String),

@@ -1,6 +1,7 @@
 //! Finds, reads and writes the files that the arguments name; a file is written completely or not
 //! at all.
 
+use std::collections::HashSet;
 use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -35,6 +36,63 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     g7_host::write_whole(path, bytes).map_err(|e| Failure::Write(path.to_path_buf(), e))
 }
 
+/// What is in the files that commands write again and again: pictures, records, reports. A file with one of
+/// these is replaced unasked.
+const OURS: [&[u8]; 9] = [
+    b"<g class=\"g7\">",
+    b"<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"g7-graph\"",
+    b"<mxfile host=\"g7\">",
+    b"$version g7 $end",
+    b"g7 tape ",
+    b"<testsuites name=\"g7",
+    b"tEXtSoftware\0g7",
+    b"digraph situations {",
+    b"\"tool\": \"g7 graph\"",
+];
+/// What a trace begins with.
+const TRACE: &[u8] = b"time,";
+/// The end of a PDF that G7 wrote; readers of PDF take it as a comment.
+pub(crate) const PDF_MARK: &[u8] = b"\n%g7\n";
+
+/// True if a file is empty or was written by one of the commands.
+fn is_ours(path: &Path) -> bool {
+    let Ok(bytes) = fs::read(path) else { return false };
+    // The font of a picture may stand before its mark.
+    let has = |mark: &[u8]| bytes.windows(mark.len()).any(|part| part == mark);
+    let begins = bytes.starts_with(TRACE) || bytes.ends_with(PDF_MARK);
+    bytes.is_empty() || begins || OURS.into_iter().any(has)
+}
+
+/// True if two names are of one file.
+pub(crate) fn is_same(a: &Path, b: &Path) -> bool {
+    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
+}
+
+/// Refuses an output that would replace the file it is made of, even with `force`; and without it one that
+/// would replace what none of the commands wrote.
+pub(crate) fn refuse_foreign(output: Option<&Path>, from: &[&Path], force: bool) -> Result<(), Failure> {
+    let Some(output) = output else { return Ok(()) };
+    refuse_source(Some(output), from)?;
+    if output.is_file() && !force && !is_ours(output) {
+        let name = output.display();
+        return Err(Failure::Usage(format!("{name} is there, and g7 did not write it; --force replaces it")));
+    }
+    Ok(())
+}
+
+/// Refuses an output that would replace the file it is made of.
+pub(crate) fn refuse_source(output: Option<&Path>, from: &[&Path]) -> Result<(), Failure> {
+    let Some(output) = output else { return Ok(()) };
+    match from.iter().find(|from| is_same(output, from)) {
+        Some(from) => Err(Failure::Usage(format!(
+            "{} is {} itself, which the output is made of; nothing was changed",
+            output.display(),
+            from.display()
+        ))),
+        None => Ok(()),
+    }
+}
+
 /// Refuses to overwrite an existing output file without `force`.
 pub(crate) fn refuse_present(output: Option<&Path>, force: bool) -> Result<(), Failure> {
     match output.filter(|o| o.is_file() && !force) {
@@ -60,7 +118,8 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
     Ok(())
 }
 
-/// The chart to run: the given file, or in a folder `chart.g7` or the only .g7 file.
+/// The chart to run: the given file, or in a folder `chart.g7` or the only .g7 file; if there is none, the same
+/// below.
 pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     let folder = match fs::metadata(path) {
         _ if path == Path::new("-") => return Ok(path.to_path_buf()),
@@ -75,17 +134,25 @@ pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
         return Ok(chart);
     }
     let mut found: Vec<PathBuf> = list(path)?.into_iter().filter(|p| p.is_file() && is_chart(p)).collect();
+    if found.is_empty() {
+        walk(path, &mut found, 0)?;
+        let called: Vec<&PathBuf> = found.iter().filter(|p| p.ends_with("chart.g7")).collect();
+        if let [only] = called.as_slice() {
+            return Ok((*only).clone());
+        }
+    }
     match found.len() {
         1 => Ok(found.remove(0)),
         0 => Err(Failure::Usage(format!("{} has no .g7 file; `g7 new` makes one", path.display()))),
         n => Err(Failure::Usage(format!(
-            "{} has {n} .g7 files and none is called chart.g7: name the one you mean",
-            path.display()
+            "{} has {n} .g7 files and none of its own is called chart.g7: name the one you mean, as in {}",
+            path.display(),
+            found.first().map_or(path, |p| p).display()
         ))),
     }
 }
 
-/// All charts: files as given, and all charts in folders and below.
+/// All charts: files as given, and all charts in folders and below; each once, at its first place.
 pub(crate) fn all(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
     let mut found = Vec::new();
     for path in paths {
@@ -104,6 +171,12 @@ pub(crate) fn all(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
             return Err(Failure::Usage(format!("{} has no .g7 file", path.display())));
         }
     }
+    let mut seen = HashSet::new();
+    found.retain(|path| {
+        let one =
+            if path == Path::new("-") { path.clone() } else { path.canonicalize().unwrap_or(path.clone()) };
+        seen.insert(one)
+    });
     Ok(found)
 }
 
@@ -132,6 +205,7 @@ fn list(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     Ok(paths)
 }
 
-fn is_chart(path: &Path) -> bool {
+/// True for a name of a .g7 file.
+pub(crate) fn is_chart(path: &Path) -> bool {
     path.extension().is_some_and(|e| e == "g7")
 }

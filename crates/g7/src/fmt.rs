@@ -33,8 +33,11 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
         if !same {
             changed += 1;
         }
-        match (args.check, path == Path::new("-")) {
-            (true, _) if same => {}
+        if args.diff && !same {
+            write!(out, "{}", diff(&source.name, &source.text, &text))?;
+        }
+        match (args.check || args.diff, path == Path::new("-")) {
+            (true, _) if same || args.diff => {}
             (true, _) => writeln!(out, "{}", source.name)?,
             (false, true) => write!(out, "{text}")?,
             (false, false) if same => {}
@@ -45,8 +48,15 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
         }
     }
     out.flush()?;
-    if args.check && changed > 0 {
+    if (args.check || args.diff) && changed > 0 {
         talk!("{changed} of {} files would change", paths.len());
     }
     Ok(if refused > 0 || (args.check && changed > 0) { Verdict::Found } else { Verdict::Fine })
+}
+
+/// The change of a file as `diff -u` has it.
+fn diff(name: &str, before: &str, after: &str) -> String {
+    let name = name.strip_prefix("./").unwrap_or(name);
+    let lines = similar::TextDiff::from_lines(before, after);
+    lines.unified_diff().header(&format!("a/{name}"), &format!("b/{name}")).to_string()
 }

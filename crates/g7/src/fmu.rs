@@ -33,7 +33,7 @@ pub(crate) struct Fmu {
     #[arg(long, value_name = "NAME")]
     pub(crate) name: Option<String>,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     pub(crate) profile: Option<ProfileName>,
     /// Pack the sources alone: the simulator compiles them.
     #[arg(long)]
@@ -66,6 +66,7 @@ impl From<Fmi> for Version {
 /// Compiles the files for this machine, if that is possible, and writes the archive.
 pub(crate) fn pack(args: &Fmu, name: &str, made: &Files) -> Result<Verdict, Failure> {
     let to = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.fmu")));
+    files::refuse_source(Some(&to), &[&files::one(&args.file)?])?;
     if to.exists() && !args.force {
         return Err(Failure::Usage(format!("{} already exists; --force replaces it", to.display())));
     }

@@ -261,7 +261,7 @@ struct What {
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     profile: Option<ProfileName>,
     /// Replace existing files.
     #[arg(long)]
@@ -480,6 +480,8 @@ fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
     if let Some((_, there)) = new.iter().find(|(_, p)| p.exists() && !what.force) {
         return Err(Failure::Usage(format!("{} already exists; --force replaces it", there.display())));
     }
+    let from = files::one(&what.file)?;
+    new.iter().try_for_each(|(_, path)| files::refuse_source(Some(path), &[&from]))?;
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.clone(), e))?;
     for (file, path) in &new {
         if let Some(folder) = path.parent() {

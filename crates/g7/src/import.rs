@@ -16,6 +16,7 @@ pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
             source.name
         )));
     }
+    files::refuse_source(args.output.as_deref(), &[&args.file])?;
     files::refuse_present(args.output.as_deref(), args.force)?;
     if !source.problems.is_empty() {
         talk!("{}", report::text(&source, &source.problems).trim_end());

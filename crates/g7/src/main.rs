@@ -22,6 +22,7 @@ mod check;
 mod cli;
 mod devices;
 mod draw;
+mod ended;
 mod explain;
 mod export;
 mod failure;
@@ -44,6 +45,7 @@ mod progress;
 mod prove;
 mod report;
 mod run;
+mod sarif;
 mod scratch;
 mod serve;
 #[cfg(target_os = "linux")]

@@ -23,11 +23,6 @@ impl Progress {
         Progress { what, total, done: 0, clock: WallClock::default(), bar: None, on: stderr().is_terminal() }
     }
 
-    /// Adds to the amount of work.
-    pub(crate) fn more(&mut self, count: u64) {
-        self.total += count;
-    }
-
     /// One more part of the work is done.
     pub(crate) fn step(&mut self) {
         self.at(self.done + 1);

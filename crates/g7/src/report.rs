@@ -1,7 +1,7 @@
 //! Prints problems, for people and for programs.
 
 use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
-use g7_model::{Problem, Severity, Span};
+use g7_model::{Fix, Problem, Severity, Span, TextEdit};
 use g7_rig::testing::Unproved;
 use serde_json::{Value, json};
 
@@ -162,6 +162,13 @@ pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
     out["source"] = json!(problem.code.source);
     out["help"] = json!(problem.help);
     out["related"] = json!(related);
+    let edit = |e: &TextEdit| {
+        let mut edit = place(source, e.at);
+        edit["text"] = json!(e.text);
+        edit
+    };
+    let fix = |f: &Fix| json!({ "label": f.label, "sure": f.sure, "edits": f.edits.iter().map(edit).collect::<Vec<_>>() });
+    out["fixes"] = problem.fixes.iter().map(fix).collect();
     out
 }
 

@@ -1,7 +1,48 @@
 //! Arguments with a syntax of their own.
 
-use g7_model::{Nanos, ProfileName, TargetPlc};
+use std::ffi::OsStr;
+
+use clap::builder::{PossibleValue, TypedValueParser};
+use clap::{Arg, Command};
+use g7_model::{Nanos, ProfileName, TargetPlc, codes};
 pub(crate) use g7_rig::values::{duration, read};
+
+/// An argument that is read by a function, and whose usual words a shell and the help know.
+#[derive(Clone)]
+pub(crate) struct Words<T> {
+    all: fn() -> Vec<PossibleValue>,
+    read: fn(&str) -> Result<T, String>,
+}
+
+impl<T: Clone + Send + Sync + 'static> TypedValueParser for Words<T> {
+    type Value = T;
+
+    fn parse_ref(&self, cmd: &Command, arg: Option<&Arg>, value: &OsStr) -> Result<T, clap::Error> {
+        self.read.parse_ref(cmd, arg, value)
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new((self.all)().into_iter()))
+    }
+}
+
+/// The name of a profile.
+pub(crate) fn profiles() -> Words<ProfileName> {
+    let all = || ProfileName::ALL.map(|p| PossibleValue::new(p.name())).to_vec();
+    Words { all, read: profile }
+}
+
+/// The name of a PLC.
+pub(crate) fn targets() -> Words<TargetPlc> {
+    let all = || TargetPlc::ALL.map(|p| PossibleValue::new(p.name())).to_vec();
+    Words { all, read: target }
+}
+
+/// The code of a problem. What is no code is told by the command.
+pub(crate) fn problem_codes() -> Words<String> {
+    let all = || codes::ALL.iter().map(|code| PossibleValue::new(code.id).help(code.title)).collect();
+    Words { all, read: |text| Ok(text.to_owned()) }
+}
 
 /// An assignment at a time: `start=1@2s`.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -29,14 +70,14 @@ pub(crate) fn assign(text: &str) -> Result<Assign, String> {
     Ok(Assign { name, value: value.to_owned(), at })
 }
 
-pub(crate) fn profile(text: &str) -> Result<ProfileName, String> {
+fn profile(text: &str) -> Result<ProfileName, String> {
     let all = ProfileName::ALL;
     all.into_iter()
         .find(|p| p.name().eq_ignore_ascii_case(text))
         .ok_or_else(|| format!("expected one of {}", all.map(ProfileName::name).join(", ")))
 }
 
-pub(crate) fn target(text: &str) -> Result<TargetPlc, String> {
+fn target(text: &str) -> Result<TargetPlc, String> {
     let all = TargetPlc::ALL;
     all.into_iter()
         .find(|p| p.name().eq_ignore_ascii_case(text))

@@ -34,6 +34,7 @@ mod retain;
 mod runner;
 mod tape;
 mod text;
+mod whole;
 
 pub use clock::{Clock, VirtualClock, WallClock, utc_millis};
 pub use date::{utc_day, utc_of, utc_text};
@@ -42,7 +43,8 @@ pub use record::chronogram::{Chronogram, Lane, Style};
 pub use record::csv::{csv_cell, csv_quote, write_csv};
 pub use record::vcd::write_vcd;
 pub use record::{Kind, Recording, Sample, Signal, Value};
-pub use retain::{Layout, RetainError, Retained, write_private, write_whole};
+pub use retain::{Layout, RetainError, Retained};
 pub use runner::{Coupling, Force, Halt, Runner, Start};
-pub use tape::{Divergence, Tape};
+pub use tape::{Divergence, Tape, TapeError};
 pub use text::{read_text, write_text};
+pub use whole::{write_private, write_whole};

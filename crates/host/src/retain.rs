@@ -1,10 +1,11 @@
-//! Keeps the values of retained variables over a restart; writes files completely or not at all.
+//! Keeps the values of retained variables over a restart.
 
-use std::fs::{self, File};
-use std::io::{self, Write};
-use std::path::{Path, PathBuf};
+use std::fs;
+use std::io;
+use std::path::Path;
 
 use crate::hash::Fnv;
+use crate::whole::write_whole;
 
 /// The names and types of the retained variables, and the number of words of each.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -108,79 +109,10 @@ impl Retained {
     }
 }
 
-/// Writes a file under a temporary name, syncs it and renames it: a full disk or a power failure
-/// leaves the old file unchanged. A path that is not a regular file (a pipe, a device) is written
-/// directly.
-///
-/// # Errors
-///
-/// The file cannot be written; no half-written file is left behind.
-pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    written(path, bytes, None)
-}
-
-/// The same for a secret: on systems that have it, the file is its owner's alone before it has a byte.
-///
-/// # Errors
-///
-/// The file cannot be written; no half-written file is left behind.
-pub fn write_private(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    #[cfg(unix)]
-    let own = Some(std::os::unix::fs::PermissionsExt::from_mode(0o600));
-    #[cfg(not(unix))]
-    let own = None;
-    written(path, bytes, own)
-}
-
-fn written(path: &Path, bytes: &[u8], own: Option<fs::Permissions>) -> io::Result<()> {
-    let meta = fs::metadata(path).ok();
-    if let Some(meta) = &meta {
-        if meta.is_dir() {
-            return Err(io::Error::from(io::ErrorKind::IsADirectory));
-        }
-        if !meta.is_file() {
-            let mut file = File::options().write(true).open(path)?;
-            file.write_all(bytes)?;
-            return file.flush();
-        }
-        // Renaming would bypass the write protection that the user has set on the file.
-        File::options().write(true).open(path)?;
-    }
-    // A symbolic link stays; the file that it points to is replaced.
-    let path = fs::canonicalize(path).unwrap_or_else(|_| path.to_path_buf());
-    let aside = beside(&path)?;
-    let written = write_aside(&aside, bytes, own.or(meta.map(|meta| meta.permissions())))
-        .and_then(|()| fs::rename(&aside, &path));
-    if written.is_err() {
-        fs::remove_file(&aside).ok();
-        return written;
-    }
-    if let Some(folder) = path.parent().filter(|p| !p.as_os_str().is_empty()) {
-        // The new name is safe only after the folder is synced; not every system can do this.
-        File::open(folder).and_then(|f| f.sync_all()).ok();
-    }
-    Ok(())
-}
-
-fn beside(path: &Path) -> io::Result<PathBuf> {
-    let name = path.file_name().ok_or(io::ErrorKind::InvalidInput)?;
-    let mut aside = std::ffi::OsString::from(".");
-    aside.push(name);
-    aside.push(format!(".{}.new", std::process::id()));
-    Ok(path.with_file_name(aside))
-}
-
-fn write_aside(aside: &Path, bytes: &[u8], like: Option<fs::Permissions>) -> io::Result<()> {
-    let mut file = File::options().write(true).create_new(true).open(aside)?;
-    if let Some(permissions) = like {
-        file.set_permissions(permissions)?;
-    }
-    file.write_all(bytes)?;
-    file.sync_all()
-}
-
 #[cfg(test)]
 mod tests {
+    use std::path::PathBuf;
+
     use super::*;
 
     fn folder(name: &str) -> PathBuf {
@@ -220,26 +152,5 @@ mod tests {
             assert!(Retained::load(&layout("INT"), &path).is_err(), "cut at {i}");
         }
         fs::remove_dir_all(folder).unwrap();
-    }
-
-    #[test]
-    fn a_full_disk_leaves_the_old_file_and_nothing_beside_it() {
-        let folder = folder("full");
-        let path = folder.join("a");
-        fs::write(&path, "old").unwrap();
-        write_whole(&path, b"new").unwrap();
-        assert_eq!(fs::read(&path).unwrap(), b"new");
-        assert!(write_whole(&folder.join("missing/a"), b"x").is_err());
-        assert!(write_whole(&folder, b"x").is_err());
-        let names: Vec<_> = fs::read_dir(&folder).unwrap().map(|e| e.unwrap().file_name()).collect();
-        assert_eq!(names, ["a"]);
-        fs::remove_dir_all(folder).unwrap();
-    }
-
-    #[cfg(target_os = "linux")]
-    #[test]
-    fn a_device_that_is_full_says_so() {
-        let error = write_whole(Path::new("/dev/full"), b"x").unwrap_err();
-        assert_eq!(error.kind(), io::ErrorKind::StorageFull);
     }
 }

@@ -31,7 +31,37 @@ pub struct Tape {
     scans: usize,
     /// The inputs that the latest scan read.
     inputs: Vec<u64>,
+    /// A hash of the names of what it is about, which the caller knows; 0 for none.
+    of: u64,
 }
+
+/// Why a text is no record that can be replayed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TapeError {
+    /// It is something else.
+    Other,
+    /// It was written by a version of G7 with another form of records.
+    Version,
+    /// It was cut off behind this line.
+    Cut(usize),
+    /// This line cannot be read.
+    Line(usize),
+}
+
+impl std::fmt::Display for TapeError {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self {
+            TapeError::Other => f.write_str("is not a record of a run"),
+            TapeError::Version => f.write_str("is a record of another version of g7"),
+            TapeError::Cut(line) => {
+                write!(f, "is a record that was cut off: its end is missing behind line {line}")
+            }
+            TapeError::Line(line) => write!(f, "is a record that is damaged: line {line} cannot be read"),
+        }
+    }
+}
+
+impl std::error::Error for TapeError {}
 
 /// The first scan at which a replay differs from the record.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,7 +72,11 @@ pub struct Divergence {
     pub now: Nanos,
 }
 
-const HEAD: &str = "g7 tape 2";
+const HEAD: &str = "g7 tape 3";
+/// What a record begins with in every version.
+const ANY_HEAD: &str = "g7 tape ";
+/// The last line of a record, before the number of its scans.
+const END: &str = "end ";
 
 impl Tape {
     /// An empty tape, for a program before its first scan.
@@ -52,7 +86,7 @@ impl Tape {
     }
 
     fn of_inputs(count: usize) -> Tape {
-        Tape { words: Chunks::new(), scans: 0, inputs: vec![0; count] }
+        Tape { words: Chunks::new(), scans: 0, inputs: vec![0; count], of: 0 }
     }
 
     pub(crate) fn write(&mut self, addr: Addr, value: u64) {
@@ -112,6 +146,15 @@ impl Tape {
         })
     }
 
+    fn about(self, of: u64) -> Tape {
+        Tape { of, ..self }
+    }
+
+    /// The hash of what it is about: a record of another chart has another one.
+    pub fn of(&self) -> u64 {
+        self.of
+    }
+
     /// The number of scans.
     pub fn scans(&self) -> usize {
         self.scans
@@ -157,7 +200,12 @@ impl Tape {
 
     /// The tape as text, one event per line.
     pub fn to_text(&self) -> String {
-        let mut out = format!("{HEAD} {}\n", self.inputs.len());
+        self.text_about(self.of)
+    }
+
+    /// The same with a hash of what it is about.
+    pub fn text_about(&self, of: u64) -> String {
+        let mut out = format!("{HEAD} {} {:x}\n", self.inputs.len(), of);
         for event in self.events() {
             match event {
                 Event::Write(addr, value) => out.push_str(&format!("w {addr} {value:x}\n")),
@@ -171,38 +219,66 @@ impl Tape {
                 }
             }
         }
+        out.push_str(&format!("{END}{}\n", self.scans));
         out
     }
 
-    /// Reads the text that [`Tape::to_text`] writes; `None` if it is not such a text.
-    pub fn from_text(text: &str) -> Option<Tape> {
-        let mut lines = text.lines();
-        let inputs: usize = lines.next()?.strip_prefix(HEAD)?.trim().parse().ok()?;
-        if inputs > 1_000_000 {
-            return None;
+    /// Reads the text that [`Tape::to_text`] writes.
+    ///
+    /// # Errors
+    ///
+    /// It is not such a text, or not all of it.
+    pub fn from_text(text: &str) -> Result<Tape, TapeError> {
+        let mut lines = (1..).zip(text.lines());
+        let first = lines.next().map_or("", |(_, line)| line);
+        if !first.starts_with(ANY_HEAD) {
+            return Err(TapeError::Other);
         }
-        let hex = |w: &str| u64::from_str_radix(w, 16).ok();
-        let mut tape = Tape::of_inputs(inputs);
-        for line in lines {
-            let mut words = line.split(' ');
-            let event = match words.next()? {
-                "w" => Event::Write(words.next()?.parse().ok()?, hex(words.next()?)?),
-                "r" => Event::Restart,
-                "s" => {
-                    let now = Nanos::new(words.next()?.parse().ok()?);
-                    let digest = hex(words.next()?)?;
-                    let change = |w: &str| {
-                        let (i, value) = w.split_once('=')?;
-                        Some((i.parse().ok()?, hex(value)?))
-                    };
-                    Event::Scan { now, changed: words.map(change).collect::<Option<_>>()?, digest }
-                }
-                _ => return None,
-            };
-            tape.push(&event);
+        let head = first.strip_prefix(HEAD).ok_or(TapeError::Version)?;
+        let mut tape = head_of(head).ok_or(TapeError::Line(1))?;
+        let mut read = 1;
+        for (number, line) in lines {
+            read = number;
+            if let Some(scans) = line.strip_prefix(END) {
+                let whole = scans.parse() == Ok(tape.scans) && text.ends_with('\n');
+                return if whole { Ok(tape) } else { Err(TapeError::Line(number)) };
+            }
+            match event_of(line) {
+                Some(event) => tape.push(&event),
+                // The last line of a file that was cut off is seldom whole.
+                None if text.lines().count() == number => return Err(TapeError::Cut(number - 1)),
+                None => return Err(TapeError::Line(number)),
+            }
         }
-        Some(tape)
+        Err(TapeError::Cut(read))
     }
+}
+
+/// The empty tape of a first line, without its version.
+fn head_of(text: &str) -> Option<Tape> {
+    let (inputs, of) = text.trim().split_once(' ')?;
+    let inputs: usize = inputs.parse().ok()?;
+    let of = u64::from_str_radix(of, 16).ok()?;
+    (inputs <= 1_000_000).then(|| Tape::of_inputs(inputs).about(of))
+}
+
+fn event_of(line: &str) -> Option<Event> {
+    let hex = |w: &str| u64::from_str_radix(w, 16).ok();
+    let mut words = line.split(' ');
+    Some(match words.next()? {
+        "w" => Event::Write(words.next()?.parse().ok()?, hex(words.next()?)?),
+        "r" => Event::Restart,
+        "s" => {
+            let now = Nanos::new(words.next()?.parse().ok()?);
+            let digest = hex(words.next()?)?;
+            let change = |w: &str| {
+                let (i, value) = w.split_once('=')?;
+                Some((i.parse().ok()?, hex(value)?))
+            };
+            Event::Scan { now, changed: words.map(change).collect::<Option<_>>()?, digest }
+        }
+        _ => return None,
+    })
 }
 
 /// A digest of the memory of a state. The first word of the image is left out: it differs between

@@ -2,7 +2,7 @@
 #![allow(missing_docs, reason = "a test")]
 
 use g7_engine::{Addr, Arith, Code, FaultKind, Num, Op, Program, Rows, Rules, Tables};
-use g7_host::{Coupling, Force, Halt, Runner, Start, Tape};
+use g7_host::{Coupling, Force, Halt, Runner, Start, Tape, TapeError};
 use g7_model::Nanos;
 
 /// A program of four words: input, output, kept, other. Each scan does `output := input`, `kept :=
@@ -156,9 +156,25 @@ fn a_tape_plays_back_to_the_same_bytes_and_notices_another_program() {
     assert_eq!((state.to_bytes(), seen), (runner.state().to_bytes(), 50));
     let other = adder();
     assert_eq!(read.replay(&other, |_, _| {}).unwrap_err().scan, 0);
-    for bad in ["", "g7 tape 1 1\n", "g7 tape 2 x", "g7 tape 2 1\nz", "g7 tape 2 1\ns 1", "g7 tape 2 1\nw 1"]
-    {
-        assert!(Tape::from_text(bad).is_none(), "{bad:?}");
+    let why = |text: &str| Tape::from_text(text).unwrap_err();
+    for (bad, reason) in [
+        ("", TapeError::Other),
+        ("time,a\n", TapeError::Other),
+        ("g7 tape 2 1\n", TapeError::Version),
+        ("g7 tape 3 x", TapeError::Line(1)),
+        ("g7 tape 3 1 0\nz\nr\nend 0\n", TapeError::Line(2)),
+        ("g7 tape 3 1 0\nr\ns 1", TapeError::Cut(2)),
+        ("g7 tape 3 1 0\nr\n", TapeError::Cut(2)),
+        ("g7 tape 3 1 0\nr\nend 7\n", TapeError::Line(3)),
+    ] {
+        assert_eq!(why(bad), reason, "{bad:?}");
+    }
+    let text = tape.text_about(0xabc);
+    assert_eq!(Tape::from_text(&text).unwrap().of(), 0xabc);
+    // Wherever it is cut, the record is not taken for a whole one.
+    let cuts = (0..text.len()).filter(|at| text.is_char_boundary(*at));
+    for at in cuts {
+        why(&text[..at]);
     }
 }
 

@@ -61,7 +61,12 @@ impl File {
         };
         file.judge();
         let nowhere = Span { file: FileId(0), start: 0, end: 0 };
-        file.problems.extend(told.into_iter().map(|p| Problem { at: nowhere, related: Vec::new(), ..p }));
+        file.problems.extend(told.into_iter().map(|p| Problem {
+            at: nowhere,
+            related: Vec::new(),
+            fixes: Vec::new(),
+            ..p
+        }));
         Ok(file)
     }
 

@@ -53,6 +53,8 @@ codes! {
     NEVER_CLEARS = "G0108" Warning "a receptivity that is never true" "IEC 60848:2013, 4.7";
     CHART_UNUSED = "G0109" Warning "an expansion or task that nothing uses" "IEC 60848:2013, 7.5";
     STARTS_EMPTY = "G0110" Warning "an initial enclosing step with no initial step inside" "IEC 60848:2013, 7.4";
+    DEAD_END = "G0111" Warning "a step without a way out" "IEC 60848:2013, 4.4";
+    NEVER_JOINS = "G0112" Warning "branches that never come together" "IEC 60848:2013, 4.4";
 
     // Names and types
     DEFINED_TWICE = "G0201" Error "one name is defined twice" "IEC 61131-3:2003, 2.7.1";
@@ -85,6 +87,13 @@ codes! {
     BAD_DECLARATION = "G0228" Error "a declaration that does not fit its type" "IEC 61131-3:2003, 2.4.3";
     ADDRESS_TWICE = "G0229" Error "one address for two variables" "IEC 61131-3:2003, 2.4.1.1";
     UNUSED_VARIABLE = "G0230" Warning "a variable that nothing names" "the .g7 format";
+    INPUT_UNREAD = "G0231" Warning "an input that no chart reads" "the .g7 format";
+    OUTPUT_UNDRIVEN = "G0232" Warning "an output that no chart drives" "the .g7 format";
+    REMAINDER_LOST = "G0233" Warning "a division that loses its remainder" "IEC 61131-3:2003, 2.5.1.5.2";
+    SECTION_READ = "G0234" Error "a transition section read where nothing runs it" "Unity Pro, transition sections";
+    EMPTY_FILE = "G0235" Warning "a file with nothing in it" "the .g7 format";
+    BAD_ALLOW = "G0236" Error "a note that allows nothing it can" "the .g7 format";
+    NEEDLESS_ALLOW = "G0237" Warning "a note that allows what nothing reports" "the .g7 format";
 
     // Evolution and actions
     CONFLICT = "G0301" Warning "branches that can be true together" "GRAFCET course, conflicts";

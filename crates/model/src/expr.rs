@@ -73,6 +73,22 @@ pub struct Arg {
     pub value: Expr,
 }
 
+impl Expr {
+    /// True if no part of it is text that could not be read.
+    pub fn is_read(&self) -> bool {
+        match &self.kind {
+            ExprKind::Bad => false,
+            ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) => true,
+            ExprKind::Unary(_, e) => e.is_read(),
+            ExprKind::Binary(_, a, b) => a.is_read() && b.is_read(),
+            ExprKind::Timer { t1, e, t2 } => {
+                t1.is_read() && e.is_read() && t2.as_ref().is_none_or(|t| t.is_read())
+            }
+            ExprKind::Call(_, args) => args.iter().all(|a| a.value.is_read()),
+        }
+    }
+}
+
 impl Path {
     /// The names joined by dots, as in messages.
     pub fn text(&self) -> String {

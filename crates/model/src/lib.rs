@@ -22,6 +22,7 @@ mod action;
 mod chart;
 pub mod codes;
 mod expr;
+mod fix;
 mod functions;
 mod name;
 mod nanos;
@@ -45,6 +46,7 @@ pub use chart::{
     Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path};
+pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use name::{Name, Param};
 pub use nanos::Nanos;

@@ -4,7 +4,7 @@
 //! value. Wrong input is never an `Err`: a check returns the parts of the chart that it could use
 //! *and* the problems, so the rest stays usable.
 
-use crate::{Severity, Span, codes::Code};
+use crate::{Fix, Severity, Span, codes::Code};
 
 /// A mistake in a chart that its author can correct.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,12 +19,14 @@ pub struct Problem {
     pub related: Vec<(Span, String)>,
     /// A remedy, if there is one that is very likely right.
     pub help: Option<String>,
+    /// Changes of the text that solve it, the likeliest first; may be empty.
+    pub fixes: Vec<Fix>,
 }
 
 impl Problem {
     /// A problem with only a place and a message.
     pub fn new(code: &'static Code, at: Span, what: impl Into<String>) -> Problem {
-        Problem { code, at, what: what.into(), related: Vec::new(), help: None }
+        Problem { code, at, what: what.into(), related: Vec::new(), help: None, fixes: Vec::new() }
     }
 
     /// Adds another place.
@@ -39,6 +41,23 @@ impl Problem {
     pub fn help(mut self, help: impl Into<String>) -> Problem {
         self.help = Some(help.into());
         self
+    }
+
+    /// Adds a change of the text that solves it.
+    #[must_use]
+    pub fn fix(mut self, fix: Fix) -> Problem {
+        self.fixes.push(fix);
+        self
+    }
+
+    /// Asks whether another name was meant, and offers it in the place of the problem, if it can be written
+    /// there as it is.
+    #[must_use]
+    pub fn meant(self, near: &str) -> Problem {
+        let plain = near.chars().all(|c| c.is_alphanumeric() || c == '_');
+        let at = self.at;
+        let problem = self.help(format!("did you mean `{near}`?"));
+        if plain { problem.fix(Fix::likely(format!("write `{near}`"), at, near)) } else { problem }
     }
 
     /// Tells whether the chart can still be compiled.

@@ -6,12 +6,14 @@
 
 use crate::problems::Problems;
 use g7_iec::constant;
-use g7_model::{FileId, Note, Problem, Span, codes};
+use g7_model::{FileId, Fix, Note, Problem, Span, codes};
 
 /// Kinds of token.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) enum Tok {
     End,
+    /// The end of a line, made by the parser where a construct may not go on behind it.
+    Line,
     Word,
     /// A name in back-ticks.
     Ticked,
@@ -66,6 +68,8 @@ pub(crate) enum Tok {
     /// A combining overline.
     Overline,
     Hash,
+    /// `%` between operands, as other languages have it.
+    Percent,
     Bad,
 }
 
@@ -173,6 +177,7 @@ impl<'a> Lexer<'a> {
                 b'/' if self.byte(1) == b'/' => self.line_note(),
                 b'/' if self.byte(1) == b'*' => newline |= self.block_note(b"/*", b"*/"),
                 b'(' if self.byte(1) == b'*' => newline |= self.block_note(b"(*", b"*)"),
+                b'#' if self.at_hash_note() => self.hash_note(),
                 0x80.. => match self.rest().chars().next() {
                     Some(c) if c.is_whitespace() => self.pos += c.len_utf8(),
                     _ => return newline,
@@ -181,6 +186,24 @@ impl<'a> Lexer<'a> {
                 _ => return newline,
             }
         }
+    }
+
+    /// True at a `#` that begins a note in other languages: behind a blank, and before no number.
+    fn at_hash_note(&self) -> bool {
+        let before = self.pos.checked_sub(1).and_then(|p| self.text.as_bytes().get(p));
+        before.is_none_or(|b| b.is_ascii_whitespace() || *b == b';')
+            && (matches!(self.byte(1), b' ' | b'\t' | b'#') || self.byte(1).is_ascii_alphabetic())
+    }
+
+    fn hash_note(&mut self) {
+        let start = self.pos;
+        self.line_note();
+        let at = Span { end: offset(start + 1), ..self.span(start) };
+        self.problems.add(at, || {
+            Problem::new(&codes::BAD_CHARACTER, at, "a note to the reader does not begin with `#`")
+                .help("write `//`")
+                .fix(Fix::sure("write `//`", at, "//"))
+        });
     }
 
     fn line_note(&mut self) {
@@ -273,6 +296,7 @@ impl<'a> Lexer<'a> {
             b'.' if next == b'.' => self.take(2, Tok::DotDot),
             b'.' => self.dot(glued),
             b'%' if next.is_ascii_alphabetic() => self.direct(),
+            b'%' => self.take(1, Tok::Percent),
             b'\'' if glued && self.after_operand() => self.take(1, Tok::Prime),
             b'\'' => self.quoted('\'', '$', Tok::Str, "text"),
             b'"' => self.quoted('"', '\\', Tok::Comment, "comment"),
@@ -427,11 +451,23 @@ impl<'a> Lexer<'a> {
     }
 
     fn unclosed(&mut self, start: usize, quote: char, kind: Tok, what: &'static str) -> Tok {
-        let trailing = self.text.as_bytes().get(self.pos.wrapping_sub(1)) == Some(&b'\r');
-        self.pos -= usize::from(trailing && self.pos > start + 1);
+        // The brackets behind the text were hardly meant to belong to it.
+        let inner = self.text.get(start + 1..self.pos).unwrap_or_default();
+        let length = match kind {
+            Tok::Ticked => inner.find(|c: char| !name_continue(c)).unwrap_or(inner.len()),
+            Tok::Str => {
+                inner.trim_end_matches(|c: char| c.is_whitespace() || matches!(c, ')' | ';' | '}')).len()
+            }
+            _ => inner.find('{').unwrap_or(inner.len()),
+        };
+        self.pos = start + 1 + inner.get(..length).unwrap_or_default().trim_end().len();
+        let shown = if quote == '`' { "`` ` ``".into() } else { format!("`{quote}`") };
         self.report(start, |at| {
-            let words = format!("this {what} is not closed with `{quote}` on its line");
-            Problem::new(&codes::UNCLOSED, at, words)
+            let help = format!("write {shown} at its end");
+            let end = Span { start: at.end, ..at };
+            Problem::new(&codes::UNCLOSED, at, format!("this {what} is not closed with {shown} on its line"))
+                .help(help.clone())
+                .fix(Fix::likely(help, end, quote))
         });
         kind
     }
@@ -449,6 +485,8 @@ impl<'a> Lexer<'a> {
             '≥' => Tok::Ge,
             '→' => Tok::Arrow,
             '\u{304}' | '\u{305}' => Tok::Overline,
+            '“' | '”' | '„' | '«' | '»' => return self.curly(c, '"', Tok::Comment),
+            '‘' | '’' | '‚' => return self.curly(c, '\'', Tok::Str),
             _ => Tok::Bad,
         };
         self.pos += c.len_utf8();
@@ -461,6 +499,28 @@ impl<'a> Lexer<'a> {
         }
         self.bad_run(start);
         Tok::Bad
+    }
+
+    /// A text in the quotes of a word processor.
+    fn curly(&mut self, open: char, straight: char, kind: Tok) -> Tok {
+        let start = self.pos;
+        self.pos += open.len_utf8();
+        let rest = self.rest();
+        let line = rest.find('\n').unwrap_or(rest.len());
+        let close = |c: char| matches!(c, '“' | '”' | '„' | '«' | '»' | '‘' | '’' | '‚' | '"' | '\'');
+        let end = rest.char_indices().take_while(|(i, _)| *i < line).find(|(_, c)| close(*c));
+        self.pos += end.map_or(line, |(i, c)| i + c.len_utf8());
+        let whole = self.span(start);
+        let at = Span { end: offset(start + open.len_utf8()), ..whole };
+        let length = end.map_or(line, |(i, _)| i);
+        let inner = rest.get(..length).unwrap_or_default();
+        self.problems.add(at, || {
+            let help = format!("write the straight mark `{straight}` on both sides");
+            Problem::new(&codes::BAD_CHARACTER, at, format!("`{open}` is no quotation mark here"))
+                .help(help.clone())
+                .fix(Fix::sure(help, whole, format!("{straight}{inner}{straight}")))
+        });
+        kind
     }
 
     /// Reports one problem for a run of characters without a meaning.
@@ -479,7 +539,12 @@ impl<'a> Lexer<'a> {
         }
         self.report(start, |at| {
             let shown: String = run.chars().take(8).flat_map(char::escape_debug).collect();
-            Problem::new(&codes::BAD_CHARACTER, at, format!("`{shown}` has no meaning here"))
+            let problem = Problem::new(&codes::BAD_CHARACTER, at, format!("`{shown}` has no meaning here"));
+            match run {
+                "~" => problem.help("the complement is written `not a`"),
+                "?" => problem.help("there is no `? :`; write `IF … THEN … ELSE … END_IF`"),
+                _ => problem,
+            }
         });
     }
 }

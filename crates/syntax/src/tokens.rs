@@ -102,7 +102,7 @@ impl Iterator for Tokens<'_> {
 
 fn public(kind: Tok) -> Option<TokenKind> {
     Some(match kind {
-        Tok::End => return None,
+        Tok::End | Tok::Line => return None,
         Tok::Word => TokenKind::Word,
         Tok::Ticked => TokenKind::Ticked,
         Tok::Int | Tok::Real | Tok::Typed => TokenKind::Number,
@@ -145,6 +145,7 @@ fn public(kind: Tok) -> Option<TokenKind> {
         | Tok::Prime
         | Tok::Overline
         | Tok::Hash
+        | Tok::Percent
         | Tok::Bad => TokenKind::Sign,
     })
 }

@@ -73,6 +73,9 @@ pub(crate) enum St {
     Return,
 }
 
+/// The words that end a statement.
+pub(crate) const END: [&str; 5] = ["END_IF", "END_CASE", "END_FOR", "END_WHILE", "END_REPEAT"];
+
 /// Returns such a word, written in upper or in lower case.
 pub(crate) fn st(word: &str) -> Option<St> {
     Some(match word {

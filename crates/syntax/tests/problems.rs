@@ -39,7 +39,7 @@ fn misspelt_words_are_read_as_what_was_meant() {
         &[
             ("1:1 G0009", "did you mean `chart`?"),
             ("2:3 G0009", "did you mean `initial`?"),
-            ("3:3 G0009", "did you mean `step`?"),
+            ("3:3 G0009", "in small letters: `step`"),
             ("4:3 G0009", "did you mean `step`?"),
         ],
     );
@@ -168,7 +168,7 @@ fn texts_that_are_never_closed_end_with_their_line() {
         "chart G {\n  step 1 \"abc\n  step `x\n  step 2\n}\nvar s : STRING := 'abc\n",
         &[
             ("2:10 G0003 this comment is not closed with `\"`", ""),
-            ("3:8 G0003 this name is not closed with ```", ""),
+            ("3:8 G0003 this name is not closed with `` ` ``", ""),
             ("6:19 G0003 this text is not closed with `'`", ""),
         ],
     );
@@ -180,7 +180,7 @@ fn numbers_and_durations_that_cannot_be_read() {
     expect(
         "scan 10\nchart G {\n  1 -> 2 when 3xs/X1\n  2 -> 1 when 1h2h/X1\n  2 -> 3 when 1.5h3m/X1\n  3 -> 4 when 0.5ns/X1\n}\n",
         &[
-            ("1:6 G0004 expected a duration", "write the unit"),
+            ("1:6 G0006 the unit of this duration is missing", "write `10s`"),
             ("3:15 G0006 `xs` is no unit of time", ""),
             ("4:15 G0006 the units of a duration go from large to small", ""),
             ("5:15 G0006 only the last number", ""),

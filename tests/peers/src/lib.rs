@@ -70,6 +70,15 @@ pub fn corpus(part: &str) -> Option<PathBuf> {
     Some(folder)
 }
 
+/// The schema of SARIF 2.1.0 as OASIS publishes it, at `G7_SARIF_SCHEMA`; it is not part of the repository.
+pub fn sarif_schema() -> Option<PathBuf> {
+    let named = std::env::var_os("G7_SARIF_SCHEMA").map(PathBuf::from).filter(|path| path.is_file());
+    if named.is_none() {
+        skip("schema of SARIF absent");
+    }
+    named
+}
+
 /// True if rustc can compile for a target; otherwise the skip is counted.
 pub fn target(name: &str) -> bool {
     let found = compiles_for(name);

@@ -13,14 +13,17 @@
 
 mod actions;
 mod clauses;
+mod ends;
 mod exclusion;
 mod facts;
 mod forcing;
 mod formula;
+mod idle;
 mod loops;
 mod named;
 mod pages;
 mod reach;
+mod remainder;
 mod settle;
 mod solve;
 mod structure;
@@ -50,6 +53,9 @@ pub fn check(doc: &Document, unit: &Unit) -> Vec<Problem> {
     if let Some(plc) = unit.target {
         target::check(doc, unit, plc, &mut problems);
     }
+    ends::check(&facts, &mut problems);
     unused::check(doc, &mut problems);
+    idle::check(doc, &mut problems);
+    remainder::check(doc, &mut problems);
     problems
 }

@@ -3,12 +3,19 @@
 use std::collections::HashSet;
 
 use g7_model::visit::Visitor;
-use g7_model::{Document, Name, Order, Situation, Span};
+use g7_model::{Document, Item, Name, Order, Situation, Span};
 
 /// All names except where they are declared. Every word of a body in another language counts.
 pub(super) fn names(doc: &Document) -> HashSet<&str> {
     let mut n = Names::default();
     n.document(doc);
+    n.found
+}
+
+/// The names that charts, what belongs to them, and properties use.
+pub(super) fn names_of_charts(doc: &Document) -> HashSet<&str> {
+    let mut n = Names::default();
+    doc.items.iter().filter(|i| !matches!(i, Item::Plant(_) | Item::Test(_))).for_each(|i| n.item(i));
     n.found
 }
 

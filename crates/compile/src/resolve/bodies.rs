@@ -179,12 +179,30 @@ impl<'d> Resolver<'_, 'd> {
             if self.section_uses.contains_key(&SectionId(k as u32)) {
                 continue;
             }
+            let read = self.unit.transitions.iter().find_map(|t| read_at(&t.receptivity, s.output));
+            if let Some(at) = read {
+                let what = format!("`{}` stays FALSE here: no transition runs this section", s.name);
+                self.problems.push(
+                    Problem::new(&codes::SECTION_READ, at, what)
+                        .related(s.at, "the section is declared here")
+                        .help("a section is the whole receptivity of one transition; write a `function`, or its expression"),
+                );
+                continue;
+            }
             let what = format!("no transition uses the section `{}`, so it never runs", s.name);
             self.problems.push(
                 Problem::new(&codes::SECTION_UNUSED, s.at, what)
                     .help("name it as the receptivity of one transition: `when …`"),
             );
         }
+    }
+}
+
+/// The place where an expression reads a variable.
+fn read_at(e: &crate::ir::Expr, v: crate::ir::VarId) -> Option<Span> {
+    match &e.kind {
+        crate::ir::ExprKind::Var(x) if *x == v => Some(e.at),
+        _ => e.operands().find_map(|e| read_at(e, v)),
     }
 }
 

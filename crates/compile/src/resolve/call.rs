@@ -61,8 +61,14 @@ impl Resolver<'_, '_> {
                     Problem::new(&codes::UNKNOWN_NAME, at, format!("there is no function `{text}`"));
                 let own = self.unit.functions.iter().map(|f| &*f.name);
                 match nearest(&text, own.chain(StandardFunction::ALL.into_iter().map(|f| f.row().name))) {
-                    Some(n) => problem.help(format!("did you mean `{n}`?")),
-                    None => problem,
+                    _ if text.eq_ignore_ascii_case("R_EDGE") => {
+                        problem.help("an edge is written `rise(a)` or `↑a`")
+                    }
+                    _ if text.eq_ignore_ascii_case("F_EDGE") => {
+                        problem.help("an edge is written `fall(a)` or `↓a`")
+                    }
+                    Some(n) => problem.meant(n),
+                    None => problem.help("declare it: `function f(x : INT) : INT { … }`"),
                 }
             }
         };

@@ -216,6 +216,7 @@ fn help(sign: Sign, a: &Typed, b: &Typed) -> Option<String> {
         Sign::Mod if a.expr.ty.is_real() || b.expr.ty.is_real() => {
             Some("`mod` is for whole numbers".to_owned())
         }
+        Sign::Div if a.literal && b.expr.ty == Type::Bool => Some("a delay has its unit: `5s/X1`".to_owned()),
         _ if numbers => {
             let long = if has(Type::Lint) { Type::Lint } else { Type::Ulint };
             let other = if a.expr.ty == long { b.expr.ty } else { a.expr.ty };

@@ -271,10 +271,15 @@ impl Resolver<'_, '_> {
             None => format!("nothing is called `{name}`"),
         };
         let mut problem = Problem::new(&codes::UNKNOWN_NAME, at, what);
+        if matches!(name, "True" | "False") {
+            return problem.meant(&name.to_ascii_uppercase());
+        }
         if let Some(base) = self.overlined(name, chart) {
             problem.help = Some(format!("write `not {base}`, `{base}'` or `/{base}`"));
-        } else if self.may_guess() {
-            problem.help = self.guess(name, home.as_deref()).map(|n| format!("did you mean `{n}`?"));
+        } else if self.may_guess()
+            && let Some(near) = self.guess(name, home.as_deref())
+        {
+            problem = problem.meant(&near);
         }
         problem
     }

@@ -145,7 +145,9 @@ impl<'u, 'd> Resolver<'u, 'd> {
             Problem::new(&codes::UNKNOWN_CHART, name.at.0, format!("there is no chart `{}`", name.text));
         if self.may_guess() {
             let near = nearest(&name.text, self.unit.charts.iter().map(|c| &*c.name));
-            problem.help = near.map(|n| format!("did you mean `{n}`?"));
+            if let Some(near) = near {
+                problem = problem.meant(near);
+            }
         }
         self.report(problem)
     }
@@ -165,7 +167,10 @@ impl<'u, 'd> Resolver<'u, 'd> {
         if self.may_guess() {
             let of_chart = self.unit.steps.get(steps.start as usize..steps.end as usize).unwrap_or(&[]);
             let near = nearest(&name.text, of_chart.iter().map(|s| &*s.name));
-            problem.help = near.map(|n| format!("did you mean `{n}`?"));
+            problem = match near {
+                Some(near) => problem.meant(near),
+                None => problem.help(format!("declare it: `step {}`", name.text)),
+            };
         }
         self.report(problem)
     }

@@ -1,8 +1,8 @@
 //! Structured Text: statements, targets and blocks with their own variables.
 
 use g7_model::{
-    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Name, Path, Problem, Span, Stmt as WrittenStmt,
-    StmtKind as Statement, Type, Work, codes,
+    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Fix, Name, Path, Problem, Span,
+    Stmt as WrittenStmt, StmtKind as Statement, Type, Work, codes,
 };
 
 use super::refer::Ref;
@@ -250,8 +250,9 @@ impl Resolver<'_, '_> {
         };
         if low > high {
             let what = format!("the range {low} .. {high} holds nothing");
-            return self
-                .report(Problem::new(&codes::EMPTY_RANGE, at, what).help(format!("write {high} .. {low}")));
+            let order = format!("write {high} .. {low}");
+            let fix = Fix::likely(order.clone(), at, format!("{high}..{low}"));
+            return self.report(Problem::new(&codes::EMPTY_RANGE, at, what).help(order).fix(fix));
         }
         Some((low, high, at))
     }
@@ -358,8 +359,14 @@ impl Resolver<'_, '_> {
         let refused = |what: &str| Problem::new(&codes::NOT_WRITABLE, at, format!("`{name}` is {what}"));
         let declared = self.var(v).map(|v| v.at)?;
         match class {
-            VarClass::Input => return self.report(refused("an input").related(declared, "declared here")),
-            VarClass::Const => return self.report(refused("a constant").related(declared, "declared here")),
+            VarClass::Input => {
+                let problem = refused("an input").related(declared, "declared here");
+                return self.report(problem.help("inputs come from outside; write an `output` or a `var`"));
+            }
+            VarClass::Const => {
+                let problem = refused("a constant").related(declared, "declared here");
+                return self.report(problem.help("declare it as `var` if it is to change"));
+            }
             VarClass::System if super::system::kept_by_system(&name) => {
                 return self.report(refused("kept by the system"));
             }

@@ -224,6 +224,9 @@ fn wrong_literal(value: &Value, want: Type, at: Span) -> Problem {
     match (value, want) {
         (_, Type::Time) => problem.help("write a duration, as in `5s` or `200ms`"),
         (Value::Int(_), Type::Bool) => problem.help("of the numbers only 0 and 1 stand for FALSE and TRUE"),
+        (Value::Real(_), want) if want.is_number() => {
+            problem.help(format!("write a whole number, or round with `REAL_TO_{}(…)`", plain(want)))
+        }
         (Value::Int(n), Type::String(_)) => problem.help(format!("write it as a text: '{n}'")),
         _ => problem,
     }

@@ -19,7 +19,7 @@ use paper::Form;
 const EXAMPLES: &str = "\
 Examples:
   g7 draw tank -o tank.svg              every chart of the file on one sheet
-  g7 draw tank -o tank.pdf --chart Fill one chart
+  g7 draw tank -o tank.pdf --chart Tank  one chart
   g7 draw tank -o pictures/ --as png    a file for each chart
   g7 draw tank > tank.svg               to the standard output
   g7 draw tank -o sfc.svg --look sfc    qualifier boxes, as in IEC 61131-3
@@ -60,6 +60,9 @@ pub(crate) struct Draw {
     /// Write the symbols of IEC 60848 as a library for draw.io, instead of a chart.
     #[arg(long, conflicts_with_all = ["file", "charts", "form", "pages", "no_actions", "scale"])]
     shapes: bool,
+    /// Replace an output that is there and that g7 did not write; never the chart itself.
+    #[arg(long)]
+    force: bool,
     /// Leave out the actions of the steps.
     #[arg(long)]
     no_actions: bool,
@@ -98,7 +101,11 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
     if args.shapes {
         return shapes(args);
     }
-    let source = sources::load(&files::one(&args.file)?, 0)?;
+    let path = files::one(&args.file)?;
+    let source = sources::load(&path, 0)?;
+    if !args.output.as_deref().is_some_and(is_folder) {
+        files::refuse_foreign(args.output.as_deref(), &[&path], args.force)?;
+    }
     if source.has_errors() {
         talk!("{}", report::text(&source, &source.problems).trim_end());
         talk!("{}: {}", source.name, Tally::of(&source.problems));
@@ -144,6 +151,7 @@ fn picture(
 /// The symbols of the standard, as a library for draw.io.
 fn shapes(args: &Draw) -> Result<Verdict, Failure> {
     let (document, _) = g7_syntax::parse(SYMBOLS, FileId(0));
+    files::refuse_foreign(args.output.as_deref(), &[], args.force)?;
     let library = g7_draw::shapes(&document, &options(args));
     files::deliver(args.output.as_deref(), library.as_bytes())?;
     Ok(Verdict::Fine)
@@ -213,6 +221,8 @@ fn each(
         }
         made.push((path, picture(form, source, &[*chart], options, args.scale)?));
     }
+    let from = files::one(&args.file)?;
+    made.iter().try_for_each(|(path, _)| files::refuse_foreign(Some(path), &[&from], args.force))?;
     std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
     made.iter().try_for_each(|(path, bytes)| files::deliver(Some(path), bytes))
 }

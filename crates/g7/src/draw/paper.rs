@@ -7,6 +7,7 @@ use clap::ValueEnum;
 use resvg::{tiny_skia, usvg};
 
 use crate::failure::Failure;
+use crate::files;
 
 /// Greatest number of pixels of a PNG: it takes 400 MB of memory.
 const MOST_PIXELS: f64 = 1e8;
@@ -73,10 +74,26 @@ fn png(tree: &usvg::Tree, scale: f32) -> Result<Vec<u8>, Failure> {
     }
     let mut pixels = tiny_skia::Pixmap::new(w as u32, h as u32).ok_or_else(too_large)?;
     resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    pixels.encode_png().map_err(|e| Failure::Usage(format!("the PNG cannot be made: {e}")))
+    let bytes = pixels.encode_png().map_err(|e| Failure::Usage(format!("the PNG cannot be made: {e}")))?;
+    Ok(signed(bytes))
+}
+
+/// Where the first chunk of a PNG, its header, ends.
+const HEADER_END: usize = 8 + 4 + 4 + 13 + 4;
+
+/// Adds the chunk that says which program made a PNG, by which g7 knows its own pictures again.
+fn signed(png: Vec<u8>) -> Vec<u8> {
+    let Some((head, rest)) = png.split_at_checked(HEADER_END) else { return png };
+    let chunk = b"tEXtSoftware\0g7";
+    let mut check = flate2::Crc::new();
+    check.update(chunk);
+    // The length is that of the text alone, without the name of the chunk.
+    let length = (chunk.len() as u32 - 4).to_be_bytes();
+    [head, &length, chunk, &check.sum().to_be_bytes(), rest].concat()
 }
 
 fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, Failure> {
     svg2pdf::to_pdf(tree, svg2pdf::ConversionOptions::default(), svg2pdf::PageOptions::default())
+        .map(|bytes| [bytes.as_slice(), files::PDF_MARK].concat())
         .map_err(|e| Failure::Usage(format!("the PDF cannot be made: {e}")))
 }

@@ -46,6 +46,9 @@ pub(crate) struct History {
     #[cfg(feature = "parquet")]
     #[arg(long, value_name = "FILE")]
     parquet: Option<PathBuf>,
+    /// Replace a file that g7 did not write, and any of Parquet; never the history itself.
+    #[arg(long)]
+    force: bool,
 }
 
 /// A time that the user named.
@@ -71,6 +74,10 @@ pub(crate) fn history(args: &History) -> Result<Verdict, Failure> {
     if !args.file.is_file() {
         return Err(Failure::Read(args.file.clone(), io::ErrorKind::NotFound.into()));
     }
+    let outputs = [args.csv.as_deref().filter(|p| *p != Path::new("-")), args.vcd.as_deref()];
+    #[cfg(feature = "parquet")]
+    let outputs = outputs.into_iter().chain([args.parquet.as_deref()]);
+    outputs.into_iter().try_for_each(|output| files::refuse_foreign(output, &[&args.file], args.force))?;
     let reader = Reader::open(&args.file).map_err(|e| cannot(&e))?;
     let overview = reader.overview().map_err(|e| cannot(&e))?;
     let asked = Asked {

@@ -58,14 +58,9 @@ pub(super) fn run(
     Ok((made, outcomes, coverage))
 }
 
-/// True if two names are of one file.
-pub(super) fn is_same(a: &Path, b: &Path) -> bool {
-    matches!((a.canonicalize(), b.canonicalize()), (Ok(a), Ok(b)) if a == b)
-}
-
 /// Writes the text of the chart with these tests; the file may be that of the chart itself.
 pub(super) fn write(path: &Path, source: &Source, tests: &[Scenario]) -> Result<(), Failure> {
-    if source.format.is_some() && is_same(path, Path::new(&source.name)) {
+    if source.format.is_some() && files::is_same(path, Path::new(&source.name)) {
         let name = path.display();
         return Err(Failure::Usage(format!("{name} is no .g7 file: name another file for the tests")));
     }

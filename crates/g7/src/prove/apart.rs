@@ -22,6 +22,8 @@ struct Side {
 }
 
 pub(crate) fn compare(args: &cli::Compare) -> Result<failure::Verdict, Failure> {
+    let from: Vec<_> = args.files.iter().map(|p| p.as_path()).collect();
+    files::refuse_foreign(args.aiger.as_deref(), &from, args.force)?;
     beside(&sides(args)?, args)
 }
 

@@ -28,7 +28,7 @@ pub(super) fn one_file(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
         if paths.len() > 1 {
             return Err(several(option));
         }
-        if !paths.iter().any(|p| added::is_same(file, p)) {
+        if !paths.iter().any(|p| files::is_same(file, p)) {
             files::refuse_present(Some(file), args.force)?;
         }
     }

@@ -39,6 +39,8 @@ use crate::message::talk;
 pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     let paths = files::all(&args.paths)?;
     made::one_file(args, &paths)?;
+    let from: Vec<_> = paths.iter().map(|p| p.as_path()).collect();
+    files::refuse_foreign(args.junit.as_deref(), &from, args.force)?;
     process::refuse(args, &paths)?;
     let patience = Patience::new()?;
     let shared = &args.shared;

@@ -12,6 +12,7 @@ use serde_json::{Value, json};
 use super::found::{Answered, Found};
 use super::output::{trouble, word};
 use crate::failure::Failure;
+use crate::sarif::{artifact, log};
 
 /// The questions as rules: name, and what is claimed.
 const RULES: [(&str, &str); 13] = [
@@ -68,21 +69,18 @@ pub(super) fn print(found: &[Found], all: bool) -> Result<(), Failure> {
         list().map(|a| place(&a.place).0).map(|f| (f, json!({ "location": artifact(f) }))).collect();
     // A file with errors, or one for which the time was over.
     let notes: Vec<Value> = found.iter().filter_map(notification).collect();
-    let log = json!({
-        "$schema": "https://docs.oasis-open.org/sarif/sarif/v2.1.0/os/schemas/sarif-schema-2.1.0.json",
-        "version": "2.1.0",
-        "runs": [{
-            "tool": { "driver": {
-                "name": "g7 prove", "semanticVersion": env!("CARGO_PKG_VERSION"), "rules": rules,
-            } },
-            "invocations": [{
-                "executionSuccessful": notes.is_empty(), "toolExecutionNotifications": notes,
-            }],
-            "columnKind": "unicodeCodePoints",
-            "artifacts": files.into_values().collect::<Vec<_>>(),
-            "results": results,
+    let run = json!({
+        "tool": { "driver": {
+            "name": "g7 prove", "semanticVersion": env!("CARGO_PKG_VERSION"), "rules": rules,
+        } },
+        "invocations": [{
+            "executionSuccessful": notes.is_empty(), "toolExecutionNotifications": notes,
         }],
+        "columnKind": "unicodeCodePoints",
+        "artifacts": files.into_values().collect::<Vec<_>>(),
+        "results": results,
     });
+    let log = log(&run);
     writeln!(anstream::stdout().lock(), "{log:#}")?;
     Ok(())
 }
@@ -137,22 +135,6 @@ fn location(at: &str, message: Option<&str>) -> Value {
     row
 }
 
-/// A file as a URI reference (RFC 3986), relative as the user named it.
-fn artifact(file: &str) -> Value {
-    let file = file.strip_prefix("./").unwrap_or(file);
-    let mut uri = if file.starts_with('/') { "file://".to_owned() } else { String::new() };
-    for byte in file.bytes() {
-        match byte {
-            b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'.' | b'_' | b'~' | b'/' => {
-                uri.push(byte as char);
-            }
-            b'\\' if cfg!(windows) => uri.push('/'),
-            _ => uri.push_str(&format!("%{byte:02X}")),
-        }
-    }
-    json!({ "uri": uri })
-}
-
 /// `path:line:column` in its parts.
 fn place(at: &str) -> (&str, u64, u64) {
     let mut parts = at.rsplitn(3, ':');
@@ -163,12 +145,11 @@ fn place(at: &str) -> (&str, u64, u64) {
 
 #[cfg(test)]
 mod tests {
-    use super::{artifact, place};
+    use super::place;
 
     #[test]
-    fn places_and_files_are_what_a_reader_expects() {
+    fn places_are_what_a_reader_expects() {
         assert_eq!(place("a/b.g7:12:3"), ("a/b.g7", 12, 3));
         assert_eq!(place("C:/b.g7:12:3"), ("C:/b.g7", 12, 3));
-        assert_eq!(artifact("./my chart é.g7")["uri"], "my%20chart%20%C3%A9.g7");
     }
 }

@@ -4,13 +4,14 @@ use std::io::{IsTerminal, Write, stdout};
 use std::path::Path;
 
 use g7_host::{
-    Chronogram, Clock, Kind, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, write_csv,
+    Chronogram, Clock, Fnv, Kind, Recording, Runner, Style, Tape, Value, VirtualClock, WallClock, write_csv,
     write_vcd,
 };
 
 use super::keep::{self, Keeper};
 use super::outside::{self, Outside};
 use crate::cli::Run;
+use crate::ended::Ended;
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::progress::Progress;
@@ -65,7 +66,15 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     let mut keeper = Keeper::new(bench, &runner, args.retain.as_deref());
     let mut live = args.real_time.then_some(&mut keeper);
     let sides = (&mut runner, &mut outside);
-    let halt = play(bench, sides, &mut recording, &script, length, &mut *clock, &mut live)?;
+    let ended = Ended::new()?;
+    let until = (length, &ended);
+    let halt = play(bench, sides, &mut recording, &script, until, &mut *clock, &mut live)?;
+    if ended.is_so() {
+        talk!(
+            "ended at {}: what is asked for is written up to here",
+            Nanos::new(runner.state().now()).plain()
+        );
+    }
     let verdict = if let Some(halt) = halt {
         let place = bench.halt_place(halt).map_or_else(String::new, |at| format!("{}: ", source.place(at)));
         let (bad, now) = (style::BAD, Nanos::new(runner.state().now()).plain());
@@ -81,7 +90,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
         write_trace(&recording, path, form)?;
     }
     if let (Some(path), Some(tape)) = (&args.record, runner.tape()) {
-        files::write(path, tape.to_text().as_bytes())?;
+        files::write(path, tape.text_about(inputs(bench)).as_bytes())?;
     }
     keeper.save(&runner)?;
     print(bench, &runner, &recording, source, &shown)?;
@@ -114,20 +123,20 @@ fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
     args.show.iter().map(find).collect()
 }
 
-/// Makes scans until `length` has passed, including the scan at its end.
+/// Makes scans until `length` has passed, including the scan at its end, or until it is ended.
 fn play(
     bench: &Bench,
     (runner, outside): (&mut Runner, &mut Option<Outside>),
     recording: &mut Recording,
     script: &[(Nanos, &Item, Value)],
-    length: Nanos,
+    (length, ended): (Nanos, &Ended),
     clock: &mut dyn Clock,
     live: &mut Option<&mut Keeper<'_>>,
 ) -> Result<Option<g7_host::Halt>, Failure> {
     let mut progress = Progress::new("running", length.count().max(1) as u64);
     let mut script = script.iter().peekable();
     let mut conflicts = Conflicts::default();
-    while runner.due() <= length {
+    while runner.due() <= length && !ended.is_so() {
         clock.wait_until(runner.due());
         runner.catch_up(clock.now());
         while let Some((_, item, value)) = script.next_if(|(at, ..)| *at <= runner.due()) {
@@ -243,12 +252,24 @@ fn columns(recording: &Recording, lanes: &[usize]) -> usize {
     width.saturating_sub(label + 20).max(20)
 }
 
+/// What tells the record of one chart from that of another: the names and types of the inputs. All else may
+/// change, so that a replay shows what a change of the chart does.
+fn inputs(bench: &Bench) -> u64 {
+    let mut hash = Fnv::default();
+    for item in bench.items.iter().filter(|i| matches!(i.role, Role::Input(_))) {
+        hash.add(format!("{} {}\n", item.name, item.ty).as_bytes());
+    }
+    hash.value()
+}
+
 /// Replays a record and compares every state.
 pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, Failure> {
     let text = String::from_utf8(files::read(path)?).unwrap_or_default();
-    let Some(tape) = Tape::from_text(&text) else {
-        return Err(Failure::Usage(format!("{} is not a record of a run", path.display())));
-    };
+    let tape = Tape::from_text(&text).map_err(|e| Failure::Usage(format!("{} {e}", path.display())))?;
+    if tape.of() != inputs(bench) {
+        let what = "is a record of another chart: its inputs have other names or types";
+        return Err(Failure::Usage(format!("{} {what}", path.display())));
+    }
     let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
     let mut recording = Recording::new(bench.signals());
     let played = tape.replay(&bench.compiled.program, |now, state| {

@@ -27,6 +27,12 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
         }
         return online(&path, source, args);
     }
+    for output in [&args.trace, &args.record] {
+        let from = [Some(path.as_path()), args.replay.as_deref(), args.retain.as_deref()];
+        let from: Vec<&Path> = from.into_iter().flatten().collect();
+        files::refuse_foreign(output.as_deref(), &from, args.force)?;
+    }
+    files::refuse_source(args.retain.as_deref(), &[&path])?;
     let is_fmu = outside::is_fmu(args.plant.as_deref());
     if !is_fmu && !args.wire.is_empty() {
         return Err(Failure::Usage("--wire is for a plant that is an FMU: --plant FILE.fmu".to_owned()));

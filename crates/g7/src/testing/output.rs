@@ -49,11 +49,38 @@ fn sentence(d: &Defect) -> String {
     if d.expected.is_empty() { d.what.clone() } else { format!("{}: {}", d.what, d.expected) }
 }
 
+/// All that came of the files.
+#[derive(Default)]
+pub(super) struct Results {
+    pub(super) outcomes: Vec<Outcome>,
+    /// Files with errors, and their problems as text.
+    pub(super) broken: Vec<(String, String)>,
+    pub(super) covered: Vec<(String, Coverage)>,
+    pub(super) unproved: Vec<Unproved>,
+    /// Tests that were left out behind a failure.
+    pub(super) not_run: usize,
+}
+
+impl Results {
+    fn failed(&self) -> usize {
+        self.outcomes.iter().filter(|o| o.defect.is_some()).count()
+    }
+}
+
 /// Prints the closing line.
-pub(super) fn summary(out: &mut dyn Write, outcomes: &[Outcome], unproved: usize) -> io::Result<()> {
-    let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
-    write!(out, "\n{} passed, {failed} failed", outcomes.len() - failed)?;
-    match unproved {
+pub(super) fn summary(out: &mut dyn Write, results: &Results) -> io::Result<()> {
+    let failed = results.failed();
+    write!(out, "\n{} passed, {failed} failed", results.outcomes.len() - failed)?;
+    match results.broken.len() {
+        0 => {}
+        1 => write!(out, ", 1 file with errors")?,
+        n => write!(out, ", {n} files with errors")?,
+    }
+    match results.not_run {
+        0 => {}
+        n => write!(out, ", {n} not run")?,
+    }
+    match results.unproved.len() {
         0 => writeln!(out),
         n => writeln!(out, ", {n} left to g7 prove"),
     }
@@ -82,18 +109,17 @@ pub(super) fn coverage(out: &mut dyn Write, files: &[(String, Coverage)]) -> io:
 }
 
 /// Prints everything as one JSON object.
-pub(super) fn json(
-    out: &mut dyn Write,
-    outcomes: &[Outcome],
-    coverage: Option<&[(String, Coverage)]>,
-    unproved: &[Unproved],
-) -> io::Result<()> {
-    let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
-    let tests: Vec<Value> = outcomes.iter().map(test_json).collect();
-    let mut all = json!({ "passed": outcomes.len() - failed, "failed": failed, "tests": tests });
-    all["not_proved"] = report::unproved_json(unproved);
-    if let Some(files) = coverage {
-        all["coverage"] = files.iter().map(|(file, c)| coverage_json(file, c)).collect();
+pub(super) fn json(out: &mut dyn Write, results: &Results, coverage: bool) -> io::Result<()> {
+    let failed = results.failed();
+    let tests: Vec<Value> = results.outcomes.iter().map(test_json).collect();
+    let broken: Vec<&str> = results.broken.iter().map(|(file, _)| file.as_str()).collect();
+    let mut all = json!({
+        "passed": results.outcomes.len() - failed, "failed": failed, "not_run": results.not_run,
+        "files_with_errors": broken, "tests": tests,
+    });
+    all["not_proved"] = report::unproved_json(&results.unproved);
+    if coverage {
+        all["coverage"] = results.covered.iter().map(|(file, c)| coverage_json(file, c)).collect();
     }
     writeln!(out, "{all:#}")
 }
@@ -126,18 +152,20 @@ fn coverage_json(file: &str, coverage: &Coverage) -> Value {
     all
 }
 
-/// A JUnit report: a suite for each file.
-pub(super) fn junit(outcomes: &[Outcome]) -> String {
+/// A JUnit report: a suite for each file. A file with errors is a suite with one error.
+pub(super) fn junit(results: &Results) -> String {
     let failed = |list: &[&Outcome]| list.iter().filter(|o| o.defect.is_some()).count();
     let took = |list: &[&Outcome]| list.iter().fold(Nanos::ZERO, |sum, o| sum + o.took).in_seconds();
+    let outcomes = &results.outcomes;
     let all: Vec<&Outcome> = outcomes.iter().collect();
     let mut files: Vec<&str> = outcomes.iter().map(|o| o.file.as_str()).collect();
     files.dedup();
     let mut out = String::from("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n");
     out.push_str(&format!(
-        "<testsuites name=\"g7\" tests=\"{}\" failures=\"{}\" time=\"{}\">\n",
-        all.len(),
+        "<testsuites name=\"g7\" tests=\"{}\" failures=\"{}\" errors=\"{}\" time=\"{}\">\n",
+        all.len() + results.broken.len(),
         failed(&all),
+        results.broken.len(),
         took(&all)
     ));
     for file in files {
@@ -149,27 +177,44 @@ pub(super) fn junit(outcomes: &[Outcome]) -> String {
             failed(&mine),
             took(&mine)
         ));
-        for o in mine {
-            let (title, time) = (escape(&o.title), o.took.in_seconds());
-            out.push_str(&format!("    <testcase classname=\"{name}\" name=\"{title}\" time=\"{time}\""));
-            match &o.defect {
-                None => out.push_str("/>\n"),
-                Some(d) => {
-                    let mut text = Vec::new();
-                    failures(&mut text, std::slice::from_ref(o)).ok();
-                    let text = anstream::adapter::strip_str(&String::from_utf8_lossy(&text)).to_string();
-                    out.push_str(&format!(
-                        ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
-                        escape(&sentence(d)),
-                        escape(text.trim())
-                    ));
-                }
-            }
-        }
+        mine.into_iter().for_each(|o| case(&mut out, o));
         out.push_str("  </testsuite>\n");
+    }
+    for (file, told) in &results.broken {
+        let name = escape(file);
+        let text = anstream::adapter::strip_str(told.trim()).to_string();
+        out.push_str(&format!(
+            "  <testsuite name=\"{name}\" tests=\"1\" failures=\"0\" errors=\"1\" time=\"0\">\n    \
+             <testcase classname=\"{name}\" name=\"the file\" file=\"{name}\" time=\"0\">\n      \
+             <error message=\"errors\">{}</error>\n    </testcase>\n  </testsuite>\n",
+            escape(&text)
+        ));
     }
     out.push_str("</testsuites>\n");
     out
+}
+
+/// A test of a JUnit report, with its place.
+fn case(out: &mut String, o: &Outcome) {
+    let (name, title, time) = (escape(&o.file), escape(&o.title), o.took.in_seconds());
+    // `path:line:column`
+    let line = o.place.rsplit(':').nth(1).unwrap_or("1");
+    out.push_str(&format!(
+        "    <testcase classname=\"{name}\" name=\"{title}\" file=\"{name}\" line=\"{line}\" time=\"{time}\""
+    ));
+    match &o.defect {
+        None => out.push_str("/>\n"),
+        Some(d) => {
+            let mut text = Vec::new();
+            failures(&mut text, std::slice::from_ref(o)).ok();
+            let text = anstream::adapter::strip_str(&String::from_utf8_lossy(&text)).to_string();
+            out.push_str(&format!(
+                ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
+                escape(&sentence(d)),
+                escape(text.trim())
+            ));
+        }
+    }
 }
 
 /// Escapes text for XML; characters that XML does not allow become U+FFFD.

@@ -60,6 +60,8 @@ pub(super) struct Edit {
     /// The position in [`Bench::items`].
     pub(super) item: usize,
     pub(super) text: String,
+    /// What is wrong with the text that was to be taken; empty as soon as it is changed.
+    pub(super) why: String,
 }
 
 pub(super) struct App<'b> {
@@ -338,13 +340,17 @@ impl<'b> App<'b> {
         }
     }
 
-    /// Ends typing: takes the value, or shows what is wrong with it.
+    /// Ends typing and takes the value. A wrong value stays in its prompt, with what is wrong with it: the
+    /// next keys are meant for it, and would operate inputs otherwise.
     pub(super) fn accept(&mut self) {
-        let Some(edit) = self.edit.take() else { return };
+        let Some(mut edit) = self.edit.take() else { return };
         let Some(item) = self.bench.items.get(edit.item) else { return };
         match values::read(&edit.text, item.kind) {
             Ok(value) => self.put(item, &value),
-            Err(why) => self.message = why,
+            Err(why) => {
+                edit.why = why;
+                self.edit = Some(edit);
+            }
         }
     }
 }

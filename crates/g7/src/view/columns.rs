@@ -7,6 +7,8 @@ use super::lines::{item_line, step_line};
 const MOST: u16 = 32;
 /// Least useful width of a list.
 const LEAST: u16 = 12;
+/// Width down to which a list is made narrower before another is left out.
+const NARROW: u16 = 15;
 /// Width of the list of steps at which the other lists start to grow.
 const GOOD: u16 = 40;
 /// Room for the time of an active step: `1m23.45s`.
@@ -32,7 +34,9 @@ pub(super) fn share(app: &App<'_>, width: u16) -> (Vec<List>, Vec<u16>) {
     let mut lists: Vec<List> = vec![None];
     lists.extend(Panel::ALL.into_iter().filter(|p| !app.listed(*p).is_empty()).map(Some));
     let mut wishes: Vec<(List, Wish)> = lists.into_iter().map(|l| (l, wish(app, l))).collect();
-    let total = |wishes: &[(List, Wish)]| wishes.iter().map(|(_, w)| w.need).fold(0, u16::saturating_add);
+    // A list goes only if the others cannot be made narrow enough: on 80 columns all five are there.
+    let narrow = |(list, w): &(List, Wish)| if list.is_some() { w.need.min(NARROW) } else { w.need };
+    let total = |wishes: &[(List, Wish)]| wishes.iter().map(narrow).fold(0, u16::saturating_add);
     while total(&wishes) > width && wishes.len() > 2 {
         let Some(last) = wishes.iter().rposition(|(l, _)| l.is_some() && *l != Some(app.panel)) else {
             break;
@@ -46,15 +50,31 @@ pub(super) fn share(app: &App<'_>, width: u16) -> (Vec<List>, Vec<u16>) {
     (lists, widths(&wishes, width))
 }
 
-/// Gives each list what it needs; if that is too much, takes from the widest. The rest goes to the
+/// Gives each list what it needs; if that is too much, takes from the widest, from the list of steps last. The rest goes to the
 /// list of steps up to a good width, then to the narrowest list that can use more; the list of
 /// steps stays wider than any other.
 fn widths(wishes: &[Wish], width: u16) -> Vec<u16> {
     let mut got: Vec<u16> = wishes.iter().map(|w| w.need).collect();
     let total = |got: &[u16]| got.iter().copied().fold(0, u16::saturating_add);
     while total(&got) > width {
-        let Some(widest) = got.iter_mut().max().filter(|g| **g > 0) else { break };
-        *widest -= 1;
+        // The list of steps goes last: the others give what they have above the least width.
+        let other = got.iter().skip(1).copied().max().filter(|g| *g > NARROW);
+        let widest = other.or(got.iter().copied().max()).filter(|g| *g > 0);
+        let from = usize::from(other.is_some());
+        let slot = got.iter_mut().skip(from).rev().find(|g| Some(**g) == widest);
+        let Some(slot) = slot else { break };
+        *slot -= 1;
+    }
+    // Where nothing is left over, comments of steps go before what other lists have above the least width.
+    if total(&got) == width {
+        let want = wishes.first().map_or(0, |w| w.want.min(MOST));
+        while got.first().is_some_and(|steps| *steps < want) {
+            let Some(slot) = got.iter_mut().skip(1).max().filter(|g| **g > NARROW) else { break };
+            *slot -= 1;
+            if let Some(steps) = got.first_mut() {
+                *steps += 1;
+            }
+        }
     }
     for turn in 0..usize::from(width.saturating_sub(total(&got))) {
         let next = next(&got, wishes, turn);

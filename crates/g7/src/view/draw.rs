@@ -170,15 +170,47 @@ fn draw_foot(frame: &mut Frame<'_>, app: &App<'_>, area: Rect) {
     let first = match &app.edit {
         Some(edit) => {
             let name = app.bench.items.get(edit.item).map_or("", |i| i.name.as_str());
-            Line::styled(format!("{name} := {}_   (Enter takes it, Esc does not)", edit.text), HELD)
+            let hint = if edit.why.is_empty() { "(Enter takes it, Esc does not)" } else { edit.why.as_str() };
+            let style = if edit.why.is_empty() { HELD } else { FAULT };
+            Line::from(vec![
+                Span::styled(format!("{name} := {}_   ", edit.text), HELD),
+                Span::styled(hint.to_owned(), style),
+            ])
         }
         None => {
             let style = if app.runner.halt().is_some() { FAULT } else { HELD };
             Line::styled(app.message.clone(), style)
         }
     };
-    let keys = "1-9 a-z inputs  Space run/pause  . scan  , pass  + - speed  Tab Up Down Enter change  ? help  q quit";
+    let keys = if app.edit.is_some() { EDIT_KEYS.to_owned() } else { hints(area.width) };
     frame.render_widget(Paragraph::new(vec![first, Line::styled(keys, DIM)]), area);
+}
+
+/// The keys while a value is typed.
+const EDIT_KEYS: &str = "typing a value: no key operates anything else   Enter takes it  Esc leaves it";
+/// The keys in the last line, in the order of the line; where there is no room for all, those with the greatest
+/// number are left out first.
+const HINTS: [(u8, &str); 9] = [
+    (2, "1-9 a-z inputs"),
+    (1, "Space run/pause"),
+    (4, ". scan"),
+    (6, ", pass"),
+    (5, "+ - speed"),
+    (3, "Tab Up Down Enter change"),
+    (7, "F hold"),
+    (0, "? help"),
+    (0, "q quit"),
+];
+
+/// As many keys as fit.
+fn hints(width: u16) -> String {
+    let line = |least: u8| {
+        let shown: Vec<&str> =
+            HINTS.iter().filter(|(rank, _)| *rank <= least).map(|(_, text)| *text).collect();
+        shown.join("  ")
+    };
+    let fits = (0..=7).rev().map(line).find(|text| text.len() <= usize::from(width));
+    fits.unwrap_or_else(|| line(0))
 }
 
 fn draw_help(frame: &mut Frame<'_>, area: Rect) {

@@ -80,6 +80,11 @@ pub(super) fn press(app: &mut App<'_>, key: KeyEvent) {
 const LONGEST: usize = 200;
 
 fn type_value(app: &mut App<'_>, code: KeyCode) {
+    if code != KeyCode::Enter
+        && let Some(edit) = &mut app.edit
+    {
+        edit.why.clear();
+    }
     match code {
         KeyCode::Enter => app.accept(),
         KeyCode::Esc => app.edit = None,

@@ -17,6 +17,7 @@ use crossterm::event::{self, Event};
 use g7_host::Runner;
 
 use crate::cli::Run;
+use crate::ended::Ended;
 use crate::failure::Failure;
 use crate::run::Keeper;
 use app::App;
@@ -47,7 +48,9 @@ fn turn(
     app: &mut App<'_>,
     keeper: &mut Keeper<'_>,
 ) -> Result<(), Failure> {
-    while !app.is_over() {
+    // A signal restores the terminal and writes what is retained, as `q` does.
+    let ended = Ended::new()?;
+    while !app.is_over() && !ended.is_so() {
         app.advance();
         keeper.tick(&app.runner)?;
         terminal.draw(|frame| draw::draw(frame, app))?;

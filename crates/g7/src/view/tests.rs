@@ -112,9 +112,23 @@ fn values_are_typed_and_refused_with_a_reason() {
     press(&mut app, "2");
     shows(&mut app, "count := _");
     press(&mut app, "70000\n");
+    shows(&mut app, "count := 70000_");
     shows(&mut app, "outside -32768 .. 32767");
-    press(&mut app, "2-5\n.");
+    // The prompt stays: the next keys correct the value, and operate nothing.
+    press(&mut app, "1.R");
+    shows(&mut app, "count := 700001.R_   (Enter");
+    shows(&mut app, "[1] ○ a");
+    shows(&mut app, "scan 0");
+    for _ in 0..9 {
+        keys::press(&mut app, KeyEvent::new(KeyCode::Backspace, KeyModifiers::NONE));
+    }
+    press(&mut app, "-5\n.");
     shows(&mut app, "count = -5");
+    press(&mut app, "2x\n");
+    keys::press(&mut app, KeyEvent::new(KeyCode::Esc, KeyModifiers::NONE));
+    assert!(!app.is_over() && app.edit.is_none(), "Esc leaves the prompt, not the view");
+    press(&mut app, "1");
+    shows(&mut app, "[1] ● a");
 }
 
 #[test]
@@ -347,4 +361,26 @@ fn any_key_in_any_order_does_no_harm() {
     picture(&mut app, 100, 30);
     keys::press(&mut app, KeyEvent::new(KeyCode::Char('c'), KeyModifiers::CONTROL));
     assert!(app.is_over());
+}
+
+#[test]
+fn eighty_columns_show_keys_and_plant() {
+    let bench = bench(include_str!("../new/chart.g7"));
+    let mut app = app(&bench, &[]);
+    press(&mut app, "..");
+    let shown = picture(&mut app, 80, 24);
+    let last = shown.lines().last().expect("a line").trim_end();
+    for part in ["1-9 a-z inputs", "Space run/pause", "? help", "q quit"] {
+        assert!(last.contains(part), "{part}: {shown}");
+    }
+    for part in
+        ["Steps", "Inputs", "Outputs", "Variables", "Plant", "level = 0", "[1] ○ start", "fill", "Chronogram"]
+    {
+        assert!(shown.contains(part), "{part}: {shown}");
+    }
+    let wide = picture(&mut app, 120, 30);
+    assert!(
+        wide.lines().last().is_some_and(|l| l.contains(", pass  + - speed") && l.contains("F hold")),
+        "{wide}"
+    );
 }

@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use g7_engine::eval;
-use g7_host::{Chronogram, Halt, Kind, Recording, Runner, Start, Style, Value, read_text};
+use g7_host::{Chronogram, Clock, Halt, Kind, Recording, Runner, Start, Style, Value, read_text};
 use g7_model::{Nanos, Span, Type};
 
 use super::coverage::Coverage;
@@ -32,6 +32,8 @@ pub struct Defect {
     pub chronogram: String,
     /// The place in charts or plant at which a fault occurred.
     pub origin: Option<String>,
+    /// True if the test was ended because it took too much real time.
+    pub overdue: bool,
     expected_at: Option<Span>,
     origin_at: Option<Span>,
 }
@@ -64,6 +66,28 @@ enum Stop {
     Fault(Halt),
 }
 
+/// The real time that a test may take.
+pub(super) struct Limit<'c> {
+    clock: &'c mut dyn Clock,
+    length: Nanos,
+    end: Nanos,
+    turn: u32,
+}
+
+impl<'c> Limit<'c> {
+    /// A limit that begins now.
+    pub(super) fn new(clock: &'c mut dyn Clock, length: Nanos) -> Limit<'c> {
+        let end = clock.now() + length;
+        Limit { clock, length, end, turn: 0 }
+    }
+
+    /// True if the time is over; the clock is asked now and then.
+    fn is_over(&mut self) -> bool {
+        self.turn += 1;
+        self.turn.is_multiple_of(64) && self.clock.now() >= self.end
+    }
+}
+
 /// Runs a test, beginning with the charts' first scan.
 pub(super) fn run<'b>(
     bench: &'b Bench,
@@ -71,6 +95,7 @@ pub(super) fn run<'b>(
     seed: u64,
     coverage: Option<&mut Coverage>,
     record: bool,
+    limit: Option<Limit<'_>>,
 ) -> Done {
     let mut exec = Exec {
         bench,
@@ -81,6 +106,7 @@ pub(super) fn run<'b>(
         at: Span::default(),
         conflicts: Conflicts::default(),
         notes: Vec::new(),
+        limit,
     };
     let ended = exec.scan().and_then(|()| exec.block(&plan.lines));
     let defect = match ended {
@@ -91,7 +117,7 @@ pub(super) fn run<'b>(
     Done { defect, simulated: exec.now(), scans: exec.runner.state().scans(), notes: exec.notes }
 }
 
-struct Exec<'b, 'c> {
+struct Exec<'b, 'c, 'l> {
     bench: &'b Bench,
     runner: Runner,
     recording: Option<Recording>,
@@ -102,9 +128,10 @@ struct Exec<'b, 'c> {
     at: Span,
     conflicts: Conflicts,
     notes: Vec<String>,
+    limit: Option<Limit<'l>>,
 }
 
-impl<'b> Exec<'b, '_> {
+impl<'b> Exec<'b, '_, '_> {
     fn block(&mut self, lines: &'b [Line]) -> Result<(), Stop> {
         let mut lines = lines.iter();
         while let Some(line) = lines.next() {
@@ -125,7 +152,20 @@ impl<'b> Exec<'b, '_> {
         Ok(())
     }
 
+    /// Ends the test if it takes too much real time.
+    fn tick(&mut self) -> Result<(), Stop> {
+        let Some(limit) = self.limit.as_mut() else { return Ok(()) };
+        if !limit.is_over() {
+            return Ok(());
+        }
+        let what = format!("ended after {} of real time, the limit of a test", limit.length.plain());
+        let Stop::Failed(mut defect) = self.failed(&what, None) else { return Ok(()) };
+        defect.overdue = true;
+        Err(Stop::Failed(defect))
+    }
+
     fn line(&mut self, line: &'b Line) -> Result<(), Stop> {
+        self.tick()?;
         match &line.does {
             Does::Set(puts) => self.set(puts),
             Does::Pulse(item, time) => self.pulse(*item, *time),
@@ -156,7 +196,10 @@ impl<'b> Exec<'b, '_> {
                 self.runner.restart(if *cold { Start::Cold } else { Start::Warm });
                 self.scan()
             }
-            Does::Repeat(count, body) => (0..*count).try_for_each(|_| self.block(body)),
+            Does::Repeat(count, body) => (0..*count).try_for_each(|_| {
+                self.tick()?;
+                self.block(body)
+            }),
             Does::Nothing => Ok(()),
         }
     }
@@ -167,6 +210,7 @@ impl<'b> Exec<'b, '_> {
 
     /// Makes one scan, then checks the conditions of the enclosing `always` blocks.
     fn scan(&mut self) -> Result<(), Stop> {
+        self.tick()?;
         let done = self.runner.scan();
         if let Some(coverage) = &mut self.coverage {
             coverage.see(self.bench, self.runner.charts_mut().1);

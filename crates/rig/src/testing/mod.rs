@@ -56,6 +56,10 @@ pub struct Options<'a> {
     pub scan: Option<Nanos>,
     /// Run only tests whose title contains this text.
     pub filter: Option<&'a str>,
+    /// The real time that a test may take.
+    pub limit: Option<Nanos>,
+    /// Runs no more tests of a file behind the first that fails.
+    pub fail_fast: bool,
 }
 
 /// Runs the tests of a file. Compiles the charts once for each plant that the tests use.
@@ -76,8 +80,14 @@ pub fn file(
         for group in &groups {
             coverage.learn(&group.bench, source);
             for (number, scenario, plan) in &group.plans {
+                if options.fail_fast && outcomes.iter().any(|(_, o)| o.defect.is_some()) {
+                    break;
+                }
                 if options.filter.is_none_or(|f| scenario.title.contains(f)) {
-                    outcomes.push((*number, one(source, &group.bench, scenario, plan, coverage, clock)));
+                    outcomes.push((
+                        *number,
+                        one(source, &group.bench, scenario, plan, coverage, clock, options.limit),
+                    ));
                 }
                 progress();
             }
@@ -169,12 +179,14 @@ fn one(
     plan: &Plan,
     coverage: &mut Coverage,
     clock: &mut dyn Clock,
+    limit: Option<Nanos>,
 ) -> Outcome {
     let begun = clock.now();
     let seed = scenario.seed.unwrap_or(0);
-    let mut first = exec::run(bench, plan, seed, Some(coverage), false);
-    if first.defect.is_some() {
-        first = exec::run(bench, plan, seed, None, true);
+    let limited = limit.map(|length| exec::Limit::new(clock, length));
+    let mut first = exec::run(bench, plan, seed, Some(coverage), false, limited);
+    if first.defect.as_ref().is_some_and(|d| !d.overdue) {
+        first = exec::run(bench, plan, seed, None, true, None);
     }
     if let Some(defect) = &mut first.defect {
         defect.describe(source);

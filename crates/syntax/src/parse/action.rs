@@ -31,8 +31,8 @@ impl Parser<'_> {
                 return actions;
             }
             let start = self.cur.start;
-            let kind = match self.action() {
-                None if self.correct(&beginnings()) => self.action(),
+            let kind = match self.line(Parser::action) {
+                None if self.correct(&beginnings()) => self.line(Parser::action),
                 kind => kind,
             };
             match kind {
@@ -42,7 +42,7 @@ impl Parser<'_> {
                     }
                     actions.push(Action { kind, at: self.since(start).into() });
                 }
-                _ => actions.extend(self.lost_action(start)),
+                _ => actions.extend(self.line(|p| p.lost_action(start))),
             }
         }
     }
@@ -123,6 +123,11 @@ impl Parser<'_> {
             return Order::Force(chart, Situation::Init);
         }
         let open = self.here();
+        if self.at_name() {
+            let text = format!("{{{}}}", self.slice(self.cur));
+            self.slip_to(open, "the steps of a situation stand in braces", &text);
+            return Order::Force(chart, Situation::Steps(self.names("the name of a step")));
+        }
         if !self.expect(Tok::LBrace, "a situation: `{8, 11}`, `{}`, `{*}` or `INIT`") {
             return Order::Force(chart, Situation::Current);
         }
@@ -161,12 +166,17 @@ impl Parser<'_> {
     /// The time of L, D, SD, DS and SL.
     fn action_time(&mut self, qualifier: Qualifier, at: Span) -> Option<Expr> {
         let name = qualifier.name();
-        let time = match self.cur.kind {
+        let kind = self.cur.kind;
+        let time = match kind {
             Tok::Time => {
                 let token = self.bump();
                 Some(self.time_of(token))
             }
             Tok::LParen => Some(self.expr_in_parens()),
+            Tok::Int | Tok::Real if self.unit_ahead() => Some(self.loose_time()),
+            Tok::Int | Tok::Real if self.peek().kind != Tok::PathDot && qualifier.timed() => {
+                Some(self.bare_time())
+            }
             _ => None,
         };
         match &time {
@@ -177,7 +187,12 @@ impl Parser<'_> {
                     self.slip(self.here(), "a time that is no number stands in parentheses", "write `(t)`");
                     return Some(self.expr());
                 }
-                self.slip(at, &format!("`{name}` needs a time"), format!("write `{name} 5s …`"));
+                let help = format!("write `{name} 5s …`");
+                if !matches!(self.cur.kind, Tok::Line | Tok::RBrace | Tok::End) {
+                    self.slip(at, &format!("`{name}` needs a time"), help);
+                } else {
+                    self.expected_help("a time and a variable", Some(&help));
+                }
             }
             Some(e) if !qualifier.timed() => {
                 let place = e.at.0;
@@ -221,7 +236,9 @@ impl Parser<'_> {
             let kind = g7_model::StmtKind::Call(path, self.call_args());
             return Target::Work(Work::Single(Box::new(Stmt { kind, at: self.since(start).into() })));
         }
-        if !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
+        let counted = matches!(self.cur.kind, Tok::Plus | Tok::Minus)
+            && matches!(self.peek().kind, Tok::Eq | Tok::Plus | Tok::Minus);
+        if !counted && !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
             return Target::Path(path);
         }
         let at = self.since(start).into();

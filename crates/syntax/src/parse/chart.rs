@@ -3,8 +3,13 @@
 use super::Parser;
 use crate::lexer::Tok;
 use g7_model::{
-    Chart, ChartItem, ChartKind, Expr, ExprKind, Name, Nanos, Place, Span, Step, StepKind, Transition, words,
+    Chart, ChartItem, ChartKind, Expr, ExprKind, Fix, Name, Nanos, Place, Problem, Span, Step, StepKind,
+    Transition, codes, words,
 };
+
+/// A slip that is told in two places: the words, and the way out.
+const STEP_IN_TRANSITION: (&str, &str) =
+    ("only the name of the step stands in a transition", "leave out `step`");
 
 impl Parser<'_> {
     /// A chart, an expansion or a task; its first word is in hand.
@@ -14,10 +19,11 @@ impl Parser<'_> {
             "task" => ChartKind::Task,
             _ => ChartKind::Chart,
         };
-        let start = self.bump().start;
-        let name = self.name("the name of the chart");
-        let comment = self.comment_if();
-        let every = self.period(kind);
+        let start = self.cur.start;
+        let (name, comment, every) = self.head(|p| {
+            p.bump();
+            (p.name("the name of the chart"), p.comment_if(), p.period(kind))
+        });
         let open = self.here();
         let mut items = Vec::new();
         if self.expect(Tok::LBrace, "`{` and the steps of the chart") || self.at_chart_start() {
@@ -66,17 +72,20 @@ impl Parser<'_> {
     }
 
     fn chart_item(&mut self, items: &mut Vec<ChartItem>) -> bool {
-        if self.at_transition() {
-            self.transitions(items);
+        self.fold(&["initial", "entry", "exit", "enclosing", "step", "macro"]);
+        if self.at_transition() || self.step_for_transition() {
+            self.line(|p| p.transitions(items));
             return true;
         }
         if let Some(kind) = self.var_kind() {
-            items.push(ChartItem::Var(self.variable(kind)));
+            items.push(ChartItem::Var(self.line(|p| p.variable(kind))));
             return true;
         }
         let start = self.cur.start;
         let item = match self.word() {
-            "initial" | "entry" | "exit" | "enclosing" | "step" | "macro" => ChartItem::Step(self.step()),
+            "initial" | "entry" | "exit" | "enclosing" | "step" | "macro" => {
+                ChartItem::Step(self.line(Parser::step))
+            }
             "pre" => {
                 self.bump();
                 let body = self.body();
@@ -87,8 +96,8 @@ impl Parser<'_> {
                 let body = self.body();
                 ChartItem::Post(body, self.since(start).into())
             }
-            "action" => ChartItem::Action(self.named_action()),
-            "transition" => ChartItem::Section(self.section()),
+            "action" => ChartItem::Action(self.line(Parser::named_action)),
+            "transition" => ChartItem::Section(self.line(Parser::section)),
             _ => return false,
         };
         items.push(item);
@@ -110,10 +119,65 @@ impl Parser<'_> {
         match self.cur.kind {
             Tok::LParen | Tok::Arrow => true,
             Tok::Int | Tok::Ticked | Tok::Word => {
-                matches!(self.peek().kind, Tok::Arrow | Tok::Colon | Tok::Comma | Tok::Output)
+                let next = self.peek();
+                matches!(next.kind, Tok::Arrow | Tok::Colon | Tok::Comma | Tok::Output)
+                    || next.kind == Tok::Minus && self.lexer.ahead(next).token().kind == Tok::Arrow
             }
             _ => false,
         }
+    }
+
+    /// True at `step 0 -> …`: the word is told and passed.
+    fn step_for_transition(&mut self) -> bool {
+        if !self.at_word("step") {
+            return false;
+        }
+        let name = self.peek();
+        let mut ahead = self.lexer.ahead(name);
+        let arrow = ahead.token();
+        if !matches!(name.kind, Tok::Word | Tok::Int | Tok::Ticked)
+            || arrow.kind != Tok::Arrow
+            || arrow.newline
+        {
+            return false;
+        }
+        let again = self.slice(ahead.token()) == "step";
+        if !again {
+            self.slip(self.here(), STEP_IN_TRANSITION.0, STEP_IN_TRANSITION.1);
+        }
+        self.bump();
+        true
+    }
+
+    /// Reads a word of the language in capitals as that word. Several in a row are told once.
+    fn fold(&mut self, list: &[&'static str]) {
+        let word = self.word();
+        let small = word.to_ascii_lowercase();
+        let Some(meant) = list.iter().copied().find(|w| *w == small && *w != word) else { return };
+        let again = self.corrected.is_some_and(|(start, _)| start == self.prev.start);
+        // A step or a variable can have such a name.
+        let next = self.peek();
+        let named = matches!(next.kind, Tok::Arrow | Tok::Colon | Tok::Comma | Tok::Assign | Tok::PathDot);
+        if named || next.newline {
+            return;
+        }
+        if !again {
+            let at = self.here();
+            let help = format!("write it in small letters: `{small}`");
+            let mut fix = Fix::sure(help.clone(), at, small);
+            // The words behind it are mended with it.
+            let mut token = next;
+            while token.kind == Tok::Word && list.contains(&&*self.slice(token).to_ascii_lowercase()) {
+                fix = fix.and(self.span_of(token), self.slice(token).to_ascii_lowercase());
+                token = self.lexer.ahead(token).token();
+            }
+            self.report(at, || {
+                Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is no word of the language here"))
+                    .help(help)
+                    .fix(fix)
+            });
+        }
+        self.corrected = Some((self.cur.start, meant));
     }
 
     /// True if `name ->` or `( … ) ->` stands here; only a few names are read ahead.
@@ -134,7 +198,12 @@ impl Parser<'_> {
 
     /// Reports text that begins no item of a chart.
     fn lost_chart_item(&mut self, start: u32) {
-        if self.at_name() {
+        let at = self.here();
+        if matches!(self.cur.kind, Tok::RParen | Tok::RBracket) {
+            let what = format!("this `{}` closes nothing", self.slice(self.cur));
+            let help = "delete it, or write the bracket that it closes";
+            self.problem_help(&codes::UNCLOSED, at, &what, help);
+        } else if self.at_name() {
             self.bump();
             let name = self.text.get(start as usize..self.prev.end as usize).unwrap_or_default();
             let what = format!("`->` after the preceding step `{name}`");
@@ -157,6 +226,7 @@ impl Parser<'_> {
         let mut kind = StepKind::Plain;
         loop {
             let at = self.here();
+            self.fold(&["initial", "entry", "exit", "enclosing", "step", "macro"]);
             let sort = match self.word() {
                 "initial" => {
                     initial = true;
@@ -185,7 +255,42 @@ impl Parser<'_> {
             self.expected_help("`step`", Some("for example `initial step 0`"));
         }
         let name = self.name("the name or number of the step");
+        self.broken_name(&name);
         self.step_rest(start, name, kind, initial)
+    }
+
+    /// Tells of a blank or another sign in a name, and passes the rest of it.
+    fn broken_name(&mut self, name: &Name) {
+        let part = |kind: Tok| matches!(kind, Tok::Word | Tok::Int | Tok::Minus);
+        if name.text.is_empty() || self.cur.newline || !self.at_name() && !self.at(Tok::Minus) {
+            return;
+        }
+        // A transition can follow on the line; then the word is no part of the name.
+        let mut ahead = self.lexer.ahead(self.cur);
+        let mut end = ahead.token();
+        let mut length = 1;
+        while part(end.kind) && !end.newline {
+            length += 1;
+            end = ahead.token();
+        }
+        let over = end.newline || matches!(end.kind, Tok::LBrace | Tok::Comment | Tok::RBrace | Tok::End);
+        if !over || self.word_of_chart() {
+            return;
+        }
+        for _ in 0..length {
+            self.bump();
+        }
+        let at = self.since(name.at.0.start);
+        let text = self.text_at(at);
+        self.lexer.problems.add(at, || {
+            Problem::new(&codes::EXPECTED, at, "a name with a blank or another sign stands in back-ticks")
+                .help(format!("write `` `{text}` `` or `{}`", text.replace([' ', '-'], "_")))
+        });
+    }
+
+    /// True at a word that can begin an item of a chart.
+    fn word_of_chart(&self) -> bool {
+        words::CHART.contains(&self.word())
     }
 
     fn macro_step(&mut self, start: u32, initial: bool, kind: &StepKind) -> Step {
@@ -196,7 +301,7 @@ impl Parser<'_> {
         self.eat_word("step");
         let name = self.name("the name of the macro-step");
         if self.at(Tok::Assign) {
-            self.slip(self.here(), "a macro-step's expansion stands behind `=`", "write `macro M3 = Dose`");
+            self.slip_to(self.here(), "a macro-step's expansion stands behind `=`", "=");
             self.bump();
         } else {
             self.expect(Tok::Eq, "`=` and the name of the expansion");
@@ -234,8 +339,13 @@ impl Parser<'_> {
         } else {
             self.step_list("the preceding steps")
         };
+        if self.at(Tok::Minus) && self.peek().kind == Tok::Arrow {
+            let at = self.here().to(self.next.map_or(self.here(), |next| self.span_of(next)));
+            self.slip_to(at, "a transition is written with `->`", "->");
+            self.bump();
+        }
         if self.at(Tok::Output) {
-            self.slip(self.here(), "a transition is written with `->`", "write `1 -> 2 when …`");
+            self.slip_to(self.here(), "a transition is written with `->`", "->");
             self.cur.kind = Tok::Arrow;
         }
         if !self.expect(Tok::Arrow, "`->` after the preceding steps") {
@@ -289,9 +399,9 @@ impl Parser<'_> {
             t.comment = self.comment_if();
         } else if t.priority.is_none() && self.eat_word("priority") {
             t.priority = Some(self.integer_u32("a number, 1 is first"));
-        } else if t.on_clearing.is_none() && self.at_word("on") && self.peek_word("clearing") {
-            self.bump();
-            self.bump();
+        } else if t.on_clearing.is_none() && self.at_two_words("on", "clearing") {
+            self.eat_word("on");
+            self.eat_word("clearing");
             self.eat(Tok::Colon);
             t.on_clearing = Some(self.block("`{` and the statements"));
         } else {
@@ -302,12 +412,13 @@ impl Parser<'_> {
 
     /// Reads `when e`, and words that are written for it by mistake.
     fn receptivity(&mut self, from: &[Name], to: &[Name]) -> Expr {
+        self.fold(&["when"]);
         if self.eat_word("when") {
             return self.condition();
         }
         let same_line = !self.cur.newline;
         if same_line && (self.at_word("if") || self.at(Tok::Colon)) {
-            self.slip(self.here(), "a receptivity stands behind `when`", "write `when`");
+            self.slip_to(self.here(), "a receptivity stands behind `when`", "when");
             self.bump();
             return self.condition();
         }
@@ -357,7 +468,7 @@ impl Parser<'_> {
 
     fn step_name(&mut self, what: &str) -> Option<Name> {
         if self.at_word("step") && self.peek().kind != Tok::Arrow {
-            self.slip(self.here(), "only the name of the step stands in a transition", "leave out `step`");
+            self.slip(self.here(), STEP_IN_TRANSITION.0, STEP_IN_TRANSITION.1);
             self.bump();
         }
         let at = self.cur.start;

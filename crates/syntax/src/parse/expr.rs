@@ -3,11 +3,11 @@
 //! The height of every tree is bounded, also for long chains (`a or b or …`), so that all later
 //! stages may recurse over it.
 
-use super::Parser;
+use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
 use crate::words;
 use g7_iec::constant;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Problem, Span, UnaryOp, codes};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Fix, Literal, Name, Path, Problem, Span, UnaryOp, codes};
 
 /// The largest height of an expression's tree.
 const MOST_HIGH: u32 = 500;
@@ -35,7 +35,7 @@ impl Parser<'_> {
         if !self.at(Tok::Assign) {
             return left.expr;
         }
-        self.slip(self.here(), "`:=` assigns; a comparison is written `=`", "write `=`");
+        self.slip_to(self.here(), "`:=` assigns; a comparison is written `=`", "=");
         self.bump();
         let right = self.tree(1);
         self.join(BinaryOp::Eq, left, right).expr
@@ -105,6 +105,7 @@ impl Parser<'_> {
             Tok::Star => BinaryOp::Mul,
             Tok::Slash => BinaryOp::Div,
             Tok::Dot => BinaryOp::Dot,
+            Tok::Percent => BinaryOp::Mod,
             Tok::Power => BinaryOp::Pow,
             _ => return None,
         })
@@ -115,9 +116,10 @@ impl Parser<'_> {
         let (sign, word) = match self.cur.kind {
             Tok::AmpAmp => ("&&", "and"),
             Tok::Bars => ("||", "or"),
+            Tok::Percent => ("%", "mod"),
             _ => return,
         };
-        self.slip(self.here(), &format!("`{sign}` is no operator here"), format!("write `{word}`"));
+        self.slip_to(self.here(), &format!("`{sign}` is no operator here"), word);
     }
 
     /// Builds `a op b`; a tree that becomes too high is cut.
@@ -141,6 +143,10 @@ impl Parser<'_> {
     }
 
     fn unary(&mut self) -> Tree {
+        if self.operand_over_line() {
+            self.operand_missing();
+            return self.no_tree();
+        }
         let outer = self.prefixes.len();
         loop {
             let op = match self.cur.kind {
@@ -155,7 +161,12 @@ impl Parser<'_> {
             self.prefixes.push((op, self.cur.start));
             self.bump();
         }
-        let mut tree = self.postfix();
+        let mut tree = if self.operand_over_line() {
+            self.operand_missing();
+            self.no_tree()
+        } else {
+            self.postfix()
+        };
         while self.prefixes.len() > outer
             && let Some((op, start)) = self.prefixes.pop()
         {
@@ -182,6 +193,17 @@ impl Parser<'_> {
         let token = self.cur;
         match token.kind {
             Tok::Int if self.peek().kind == Tok::PathDot => self.path_or_call(),
+            Tok::Int | Tok::Real if self.unit_ahead() => self.loose_timed(),
+            Tok::Time if self.slice(token).starts_with("0x") => self.foreign_hexadecimal(),
+            Tok::Comment if self.is_text_value() => {
+                self.slip(
+                    self.here(),
+                    "a text as a value stands in single quotes",
+                    "write `'…'`; a comment, in double quotes, is drawn",
+                );
+                self.bump();
+                self.leaf(ExprKind::Bad, token.start)
+            }
             Tok::Int | Tok::Real | Tok::Typed | Tok::Str => {
                 self.bump();
                 let literal = self.literal(token);
@@ -213,6 +235,10 @@ impl Parser<'_> {
 
     fn no_operand(&mut self) -> Tree {
         self.expected("an expression");
+        self.no_tree()
+    }
+
+    fn no_tree(&self) -> Tree {
         Tree { expr: Expr { kind: ExprKind::Bad, at: self.here().into() }, height: 1 }
     }
 
@@ -284,15 +310,45 @@ impl Parser<'_> {
         self.leaf(ExprKind::Bad, start)
     }
 
+    /// True in a comment where a value is needed and no operand can have been forgotten.
+    fn is_text_value(&self) -> bool {
+        matches!(self.prev.kind, Tok::LParen | Tok::Comma | Tok::Assign | Tok::Eq | Tok::Ne)
+            && !self.cur.newline
+    }
+
+    /// `0x1F`, which is `16#1F` here.
+    fn foreign_hexadecimal(&mut self) -> Tree {
+        let token = self.bump();
+        let at = self.span_of(token);
+        let digits = self.slice(token).trim_start_matches("0x").to_ascii_uppercase();
+        self.lexer.problems.add(at, || {
+            let problem = Problem::new(&codes::BAD_NUMBER, at, "a hexadecimal number begins with `16#`");
+            meant(problem, &format!("16#{digits}"))
+        });
+        self.leaf(ExprKind::Bad, token.start)
+    }
+
+    /// `5 s` or `5 s/X1`: told, and read without the blank.
+    fn loose_timed(&mut self) -> Tree {
+        let start = self.cur.start;
+        let t1 = self.loose_time();
+        self.delayed(t1, start)
+    }
+
     /// A duration, or `t1/e/t2`.
     fn timed(&mut self) -> Tree {
         let token = self.bump();
         let t1 = self.time_of(token);
+        self.delayed(t1, token.start)
+    }
+
+    /// The rest of `t1/e/t2`, if a `/` follows.
+    fn delayed(&mut self, t1: Expr, start: u32) -> Tree {
         if !self.at(Tok::Slash) {
             return Tree { expr: t1, height: 1 };
         }
         if !self.enter() {
-            return self.leaf(ExprKind::Bad, token.start);
+            return self.leaf(ExprKind::Bad, start);
         }
         self.bump();
         let e = self.unary();
@@ -303,7 +359,7 @@ impl Parser<'_> {
             let token = self.bump();
             t2 = Some(Box::new(self.time_of(token)));
         }
-        let at = self.since(token.start);
+        let at = self.since(start);
         self.checked(ExprKind::Timer { t1: Box::new(t1), e: Box::new(e.expr), t2 }, at, e.height + 1)
     }
 
@@ -316,6 +372,20 @@ impl Parser<'_> {
     /// `rise(e)` and `fall(e)`.
     fn edge(&mut self, op: UnaryOp) -> Tree {
         let start = self.bump().start;
+        if !self.at(Tok::LParen) && (self.at_name() || self.at(Tok::Direct)) {
+            let (word, sign) = if op == UnaryOp::Rise { ("rise", '↑') } else { ("fall", '↓') };
+            let operand = self.slice(self.cur);
+            let help = format!("write `{word}({operand})` or `{sign}{operand}`");
+            let place = self.here();
+            let fix = Fix::sure(help.clone(), Span { start, ..place }, format!("{word}({operand})"));
+            self.report(place, || {
+                let what = format!("the operand of `{word}` stands in parentheses");
+                Problem::new(&codes::EXPECTED, place, what).help(help).fix(fix)
+            });
+            let inner = self.postfix();
+            let at = self.since(start);
+            return self.checked(ExprKind::Unary(op, Box::new(inner.expr)), at, inner.height + 1);
+        }
         if !self.at(Tok::LParen) {
             self.expected("`(`");
             return self.leaf(ExprKind::Bad, start);

@@ -4,8 +4,8 @@ use super::Parser;
 use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
-    Block, Document, Expr, ExprKind, Function, Item, Name, NamedAction, Path, Problem, Profile, ProfileName,
-    Section, Stmt, StmtKind, Switch, TargetPlc, codes,
+    Block, Document, Expr, ExprKind, Fix, Function, Item, Name, NamedAction, Path, Problem, Profile,
+    ProfileName, Section, Stmt, StmtKind, Switch, TargetPlc, codes,
 };
 
 impl Parser<'_> {
@@ -29,21 +29,23 @@ impl Parser<'_> {
 
     fn item(&mut self) -> Option<Item> {
         if let Some(kind) = self.var_kind() {
-            return Some(Item::Var(self.variable(kind)));
+            return Some(Item::Var(self.line(|p| p.variable(kind))));
         }
         let start = self.cur.start;
         Some(match self.word() {
-            "profile" => self.profile(),
+            "profile" => self.line(Parser::profile),
             "scan" => {
-                self.bump();
-                let time = self.duration("a duration");
+                let time = self.line(|p| {
+                    p.bump();
+                    p.duration("a duration")
+                });
                 Item::Cycle(time, self.since(start).into())
             }
-            "target" => self.target(),
+            "target" => self.line(Parser::target),
             "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
-            "action" => Item::Action(self.named_action()),
-            "transition" => Item::Section(self.section()),
-            "function" => Item::Function(self.function()),
+            "action" => Item::Action(self.line(Parser::named_action)),
+            "transition" => Item::Section(self.line(Parser::section)),
+            "function" => Item::Function(self.line(Parser::function)),
             "pre" => {
                 self.bump();
                 let body = self.body();
@@ -56,8 +58,8 @@ impl Parser<'_> {
             }
             "plant" => Item::Plant(self.plant()),
             "test" => Item::Test(self.test()),
-            "prove" => Item::Prove(self.property()),
-            "assume" => Item::Prove(self.assumption()),
+            "prove" => Item::Prove(self.line(Parser::property)),
+            "assume" => Item::Prove(self.line(Parser::assumption)),
             "layout" => Item::Layout(self.layout()),
             _ => return None,
         })
@@ -68,11 +70,18 @@ impl Parser<'_> {
         let at = self.here();
         let word = self.word();
         if self.at(Tok::RBrace) {
-            self.problem(&codes::UNCLOSED, at, "this `}` closes nothing");
+            let help = "delete it, or write the bracket that it closes";
+            self.problem_help(&codes::UNCLOSED, at, "this `}` closes nothing", help);
             self.bump();
             return;
         }
-        if self.at_chart_start() {
+        if self.foreign_block(word) {
+            return;
+        }
+        if self.at(Tok::Minus) && self.peek().kind == Tok::Minus {
+            let what = "a note to the reader does not begin with `--`";
+            self.problem_help(&codes::BAD_CHARACTER, at, what, "write `//`");
+        } else if self.at_chart_start() {
             let help = "write it between the braces of a chart: `chart Main { … }`";
             self.problem_help(&codes::EXPECTED, at, "steps and transitions stand in a chart", help);
         } else if !word.is_empty() {
@@ -96,6 +105,26 @@ impl Parser<'_> {
         }
     }
 
+    /// Tells of a block of declarations as IEC 61131-3 has them, and passes it.
+    fn foreign_block(&mut self, word: &str) -> bool {
+        let item = match word.to_ascii_uppercase().as_str() {
+            "VAR_INPUT" => "input",
+            "VAR_OUTPUT" => "output",
+            "VAR" | "VAR_GLOBAL" | "VAR_EXTERNAL" | "VAR_TEMP" | "VAR_IN_OUT" => "var",
+            _ => return false,
+        };
+        let at = self.here();
+        let what = format!("variables are declared one a line, without `{word}` and `END_VAR`");
+        self.problem_help(&codes::UNKNOWN_WORD, at, &what, &format!("write `{item} a : BOOL`"));
+        while !self.at(Tok::End) && !self.word().eq_ignore_ascii_case("END_VAR") && !self.at_file_start() {
+            self.bump();
+        }
+        if self.word().eq_ignore_ascii_case("END_VAR") {
+            self.bump();
+        }
+        true
+    }
+
     fn profile(&mut self) -> Item {
         let start = self.bump().start;
         let word = self.word();
@@ -111,7 +140,7 @@ impl Parser<'_> {
         if self.eat(Tok::LBrace) {
             while !matches!(self.cur.kind, Tok::RBrace | Tok::End) && !self.at_file_start() {
                 let at = self.cur.start;
-                if let Some(switch) = self.switch() {
+                if let Some(switch) = self.line(Parser::switch) {
                     switches.push((switch, self.since(at).into()));
                 }
                 if !self.eat(Tok::Comma) {
@@ -134,10 +163,10 @@ impl Parser<'_> {
         let near = words::similar(word, list);
         self.report(at, || {
             let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is not {what}"));
-            problem.help(match near {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("there are {}", list.join(", ")),
-            })
+            match near {
+                Some(near) => problem.meant(near),
+                None => problem.help(format!("there are {}", list.join(", "))),
+            }
         });
         self.bump();
     }
@@ -166,10 +195,13 @@ impl Parser<'_> {
             let near = words::similar(text, &names);
             self.lexer.problems.add(at, || {
                 let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no switch `{text}`"));
-                problem.help(match near {
-                    Some(near) => format!("did you mean `{near}`?"),
-                    None => format!("there are {} and bound", names.join(", ")),
-                })
+                match near {
+                    Some(near) => {
+                        let problem = problem.help(format!("did you mean `{near}`?"));
+                        problem.fix(Fix::sure(format!("write `{near}`"), at, near))
+                    }
+                    None => problem.help(format!("there are {} and bound", names.join(", "))),
+                }
             });
         }
         found.map(|(_, switch)| *switch)

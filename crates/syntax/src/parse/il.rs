@@ -15,7 +15,7 @@ impl Parser<'_> {
                 return list;
             }
             let start = self.cur.start;
-            match self.instruction() {
+            match self.line(Parser::instruction) {
                 // A word of the language where a name should be is left standing.
                 Some(kind) if self.cur.start > start => {
                     list.push(Instruction { kind, at: self.since(start) })

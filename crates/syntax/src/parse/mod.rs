@@ -7,9 +7,12 @@
 mod action;
 mod chart;
 mod expr;
+mod extent;
 mod file;
 mod il;
 pub(crate) mod ladder;
+mod lines;
+mod literal;
 mod plant;
 mod scenario;
 mod st;
@@ -20,17 +23,17 @@ pub use file::SWITCHES;
 use crate::lexer::{Lexer, Tok, Token};
 use crate::quote;
 use crate::words;
-use g7_iec::constant;
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Name, Nanos, Problem, Span, UnaryOp};
+use g7_model::{FileId, Fix, Name, Problem, Span, UnaryOp};
 
 /// The deepest nesting of brackets, blocks and operands.
 const MOST_NESTED: u32 = 128;
 
-/// Values for text that could not be read. They are allowed everywhere, so that no later stage
-/// complains again.
-const UNREAD_TIME: Nanos = Nanos::SECOND;
-const UNREAD_NUMBER: u64 = 1;
+/// A problem at whose place this text was surely meant.
+fn meant(problem: Problem, text: &str) -> Problem {
+    let (at, help) = (problem.at, format!("write `{text}`"));
+    problem.help(help.clone()).fix(Fix::sure(help, at, text))
+}
 
 /// The parser: the current token, and at most one read ahead.
 pub(crate) struct Parser<'a> {
@@ -39,6 +42,8 @@ pub(crate) struct Parser<'a> {
     file: FileId,
     cur: Token,
     next: Option<Token>,
+    /// How far the construct in hand may run on, and where the line ended that it stands on.
+    lines: extent::Lines,
     prev: Token,
     nested: u32,
     /// Signs before operands that are being read, each with its start; `+` has no operator.
@@ -61,7 +66,20 @@ impl<'a> Parser<'a> {
         let cur = lexer.token();
         let prev = Token { kind: Tok::Bad, start: cur.start, end: cur.start, newline: true };
         let prefixes = Vec::new();
-        Parser { lexer, text, file, cur, next: None, prev, nested: 0, prefixes, told: None, corrected: None }
+        let lines = extent::Lines::default();
+        Parser {
+            lexer,
+            text,
+            file,
+            cur,
+            next: None,
+            lines,
+            prev,
+            nested: 0,
+            prefixes,
+            told: None,
+            corrected: None,
+        }
     }
 
     /// The problems, and the notes.
@@ -73,17 +91,27 @@ impl<'a> Parser<'a> {
 
     fn bump(&mut self) -> Token {
         let token = self.cur;
-        if token.kind != Tok::End {
-            self.prev = token;
-            self.cur = match self.next.take() {
-                Some(next) => next,
-                None => self.lexer.token(),
-            };
+        match token.kind {
+            Tok::End => return token,
+            Tok::Line => {
+                self.pass_line_end();
+                return token;
+            }
+            _ => self.lines.bracket(token.kind),
         }
+        self.prev = token;
+        self.cur = match self.next.take() {
+            Some(next) => next,
+            None => self.lexer.token(),
+        };
+        self.hold_line_end();
         token
     }
 
     fn peek(&mut self) -> Token {
+        if let Some(behind) = self.lines.behind {
+            return behind;
+        }
         match self.next {
             Some(next) => next,
             None => {
@@ -143,7 +171,10 @@ impl<'a> Parser<'a> {
         let Some(near) = words::similar(word, list).filter(|_| follows) else { return false };
         self.report(at, || {
             let what = format!("`{word}` is no word of the language here");
-            Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"))
+            let problem =
+                Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"));
+            // The rest of the text fits the word, and it is read as such.
+            problem.fix(Fix::sure(format!("write `{near}`"), at, near))
         });
         self.corrected = Some((at.start, near));
         true
@@ -153,7 +184,13 @@ impl<'a> Parser<'a> {
         self.word() == word
     }
 
+    /// Reads this word if it stands here, or at the start of the next line: a word that is asked for
+    /// by its name goes on with a construct and begins nothing else.
     fn eat_word(&mut self, word: &str) -> bool {
+        let next = self.behind_line_end().is_some_and(|t| t.kind == Tok::Word && self.slice(t) == word);
+        if next {
+            self.pass_line_end();
+        }
         let here = self.at_word(word);
         if here {
             self.bump();
@@ -167,6 +204,10 @@ impl<'a> Parser<'a> {
     }
 
     fn eat_st(&mut self, word: words::St) -> bool {
+        let next = self.behind_line_end().is_some_and(|t| words::st(self.slice(t)) == Some(word));
+        if next {
+            self.pass_line_end();
+        }
         let here = self.st_word() == Some(word);
         if here {
             self.bump();
@@ -187,6 +228,11 @@ impl<'a> Parser<'a> {
 
     fn span_of(&self, token: Token) -> Span {
         Span { file: self.file, start: token.start, end: token.end }
+    }
+
+    /// The text at a place.
+    fn text_at(&self, at: Span) -> &'a str {
+        self.text.get(at.start as usize..at.end as usize).unwrap_or_default()
     }
 
     /// From a byte to the end of the last token read.
@@ -228,6 +274,14 @@ impl<'a> Parser<'a> {
             return;
         }
         self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what).help(help));
+    }
+
+    /// Reports a slip for which this text was meant.
+    fn slip_to(&mut self, at: Span, what: &str, text: &str) {
+        if self.silent() {
+            return;
+        }
+        self.lexer.problems.add(at, || meant(Problem::new(&codes::EXPECTED, at, what), text));
     }
 
     /// The current token, in words.
@@ -309,8 +363,14 @@ impl<'a> Parser<'a> {
             let (at, words) = self.expected_words(sign);
             let open_sign = self.text.get(open.start as usize..open.end as usize).unwrap_or_default();
             self.report(at, || {
-                Problem::new(&codes::UNCLOSED, at, words).related(open, format!("`{open_sign}` stands here"))
+                Problem::new(&codes::UNCLOSED, at, words)
+                    .related(open, format!("`{open_sign}` stands here"))
+                    .help("each bracket that is opened has to be closed")
             });
+        }
+        if !here {
+            self.lines.unclosed();
+            self.hold_line_end();
         }
         here
     }
@@ -432,6 +492,7 @@ impl<'a> Parser<'a> {
                 | Tok::Assign
                 | Tok::Comment
         );
+        let fits = fits || self.peek().newline;
         if !fits || self.cur.newline && self.prev.kind != Tok::Bad {
             let help = format!("`{word}` is a word of the language; as a name it stands in back-ticks");
             self.expected_help(what, Some(&help));
@@ -462,104 +523,6 @@ impl<'a> Parser<'a> {
             Tok::Ticked => true,
             Tok::Int => self.slice(self.cur).bytes().all(|b| b.is_ascii_digit()),
             _ => false,
-        }
-    }
-
-    /// `"…"`, if it stands here.
-    fn comment_if(&mut self) -> Option<Box<str>> {
-        self.at(Tok::Comment).then(|| {
-            let token = self.bump();
-            quote::unquote(self.slice(token), '"').into()
-        })
-    }
-
-    /// A text in quotes of either kind.
-    fn text_if(&mut self) -> Option<Box<str>> {
-        if self.at(Tok::Str) {
-            let token = self.bump();
-            return Some(self.string(token));
-        }
-        self.comment_if()
-    }
-
-    /// The text of a string token.
-    fn string(&mut self, token: Token) -> Box<str> {
-        let (text, wrong) = constant::unquote_st(self.slice(token));
-        if let Some(wrong) = wrong {
-            let at = self.span_of(token);
-            self.lexer.problems.add(at, || Problem::new(&codes::BAD_CHARACTER, at, wrong));
-        }
-        text.into()
-    }
-
-    // Numbers
-
-    /// A duration as written, if one stands here.
-    fn duration_if(&mut self) -> Option<Nanos> {
-        self.at(Tok::Time).then(|| {
-            let token = self.bump();
-            self.duration_of(token)
-        })
-    }
-
-    fn duration_of(&mut self, token: Token) -> Nanos {
-        let at = self.span_of(token);
-        let text = self.slice(token);
-        match constant::duration(text) {
-            Ok(time) => time,
-            Err(what) => {
-                let name_like = !text.contains('#');
-                self.lexer.problems.add(at, || {
-                    let problem = Problem::new(&codes::BAD_DURATION, at, what);
-                    if name_like {
-                        problem.help(
-                            "a duration is `5s` or `1h30m`; a name that begins with a digit stands in back-ticks",
-                        )
-                    } else {
-                        problem
-                    }
-                });
-                UNREAD_TIME
-            }
-        }
-    }
-
-    /// A duration; without one a problem.
-    fn duration(&mut self, what: &str) -> Nanos {
-        if let Some(time) = self.duration_if() {
-            return time;
-        }
-        if matches!(self.cur.kind, Tok::Int | Tok::Real) {
-            self.expected_help(what, Some("write the unit: `10ms`, `5s`, `1m30s`"));
-            self.bump();
-        } else {
-            self.expected(what);
-        }
-        UNREAD_TIME
-    }
-
-    /// A whole number that fits into `most`, if one stands here.
-    fn integer_if(&mut self, most: u64) -> Option<u64> {
-        self.at(Tok::Int).then(|| {
-            let token = self.bump();
-            let at = self.span_of(token);
-            let value = constant::integer(self.slice(token)).and_then(|v| {
-                u64::try_from(v).ok().filter(|v| *v <= most).ok_or_else(|| format!("at most {most} here"))
-            });
-            value.unwrap_or_else(|what| {
-                self.lexer.problems.add(at, || Problem::new(&codes::BAD_NUMBER, at, what));
-                UNREAD_NUMBER
-            })
-        })
-    }
-
-    fn integer_u32(&mut self, what: &str) -> u32 {
-        match self.integer_if(u64::from(u32::MAX)) {
-            Some(n) => u32::try_from(n).unwrap_or(u32::MAX),
-            None => {
-                self.expected(what);
-                1
-            }
         }
     }
 

@@ -7,9 +7,11 @@ use g7_model::{Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Ra
 impl Parser<'_> {
     /// `plant Name { … }`.
     pub(super) fn plant(&mut self) -> Plant {
-        let start = self.bump().start;
-        let name = self.name("the name of the plant");
-        let comment = self.comment_if();
+        let start = self.cur.start;
+        let (name, comment) = self.head(|p| {
+            p.bump();
+            (p.name("the name of the plant"), p.comment_if())
+        });
         let open = self.here();
         let mut items = Vec::new();
         if self.expect(Tok::LBrace, "`{` and the parts of the plant") {
@@ -23,9 +25,9 @@ impl Parser<'_> {
                     break;
                 }
                 let at = self.cur.start;
-                match self.plant_item() {
+                match self.line(Parser::plant_item) {
                     Some(item) => items.push(item),
-                    None if self.correct(words::PLANT) => items.extend(self.plant_item()),
+                    None if self.correct(words::PLANT) => items.extend(self.line(Parser::plant_item)),
                     None => self.lost_plant_item(at),
                 }
             }
@@ -183,7 +185,7 @@ impl Parser<'_> {
             let mut before = None;
             while self.at_name() && before != Some(self.cur.start) {
                 before = Some(self.cur.start);
-                bindings.push(self.binding());
+                bindings.push(self.line(Parser::binding));
                 self.skip_semis();
             }
             self.close(Tok::RBrace, "`}` after the bindings", open);

@@ -12,7 +12,15 @@ use g7_model::{
 impl Parser<'_> {
     /// `test "…" { … }`.
     pub(super) fn test(&mut self) -> Scenario {
-        let start = self.bump().start;
+        let start = self.cur.start;
+        let (title, plant, seed) = self.head(Parser::test_head);
+        let body = self.test_block();
+        Scenario { title, plant, seed, body, at: self.since(start).into() }
+    }
+
+    /// The title, the plant and the seed.
+    fn test_head(&mut self) -> (Box<str>, Option<Name>, Option<u64>) {
+        self.bump();
         let title = self.text_if().unwrap_or_else(|| {
             self.expected("the title of the test in double quotes");
             "".into()
@@ -27,8 +35,7 @@ impl Parser<'_> {
         } else {
             None
         };
-        let body = self.test_block();
-        Scenario { title, plant, seed, body, at: self.since(start).into() }
+        (title, plant, seed)
     }
 
     fn test_block(&mut self) -> Vec<TestStmt> {
@@ -52,8 +59,8 @@ impl Parser<'_> {
                 break;
             }
             let start = self.cur.start;
-            let kind = match self.test_statement() {
-                None if self.correct(words::TEST) => self.test_statement(),
+            let kind = match self.line(Parser::test_statement) {
+                None if self.correct(words::TEST) => self.line(Parser::test_statement),
                 kind => kind,
             };
             match kind {
@@ -69,8 +76,11 @@ impl Parser<'_> {
         if self.at_name() && matches!(self.peek().kind, Tok::Assign | Tok::Eq) {
             self.unexpected("a statement of a test", Some("inputs are moved by `set a := TRUE`"));
         } else {
-            let list = words::TEST.join(", ");
-            self.unexpected(&format!("a statement of a test: {list}"), None);
+            let help = match self.word() {
+                "assert" | "check" | "verify" => "a condition is asked by `expect a`".into(),
+                _ => format!("there are {}", words::TEST.join(", ")),
+            };
+            self.unexpected("a statement of a test", Some(&help));
         }
         if self.cur.start == start {
             self.bump();
@@ -154,6 +164,10 @@ impl Parser<'_> {
 
     fn wait(&mut self) -> TestStmtKind {
         self.bump();
+        if self.st_word() == Some(St::For) {
+            self.slip(self.here(), "`wait` takes its duration alone", "leave out `for`");
+            self.bump();
+        }
         if !self.eat_st(St::Until) {
             return TestStmtKind::Wait(self.duration("a duration or `until`"));
         }
@@ -224,7 +238,7 @@ impl Parser<'_> {
     /// `assume e`.
     pub(super) fn assumption(&mut self) -> Property {
         let start = self.bump().start;
-        let kind = PropertyKind::Assume(if self.at_expr() { self.condition() } else { self.bad() });
+        let kind = PropertyKind::Assume(self.claim());
         let comment = self.comment_if();
         Property { kind, plant: None, comment, at: self.since(start).into() }
     }
@@ -234,6 +248,7 @@ impl Parser<'_> {
         let next = self.peek();
         let word = self.slice(next);
         self.at(Tok::Word)
+            && !next.newline
             && !crate::words::is_reserved(self.word())
             && match next.kind {
                 Tok::Word => {
@@ -245,7 +260,11 @@ impl Parser<'_> {
 
     /// A condition that a word of its own leads in.
     fn claim(&mut self) -> Expr {
-        if self.at_expr() { self.condition() } else { self.bad() }
+        if self.at_expr() {
+            return self.condition();
+        }
+        self.expected("a condition");
+        self.bad()
     }
 
     /// `a leads to b`.
@@ -311,13 +330,16 @@ impl Parser<'_> {
 
     /// `layout Main { … }`.
     pub(super) fn layout(&mut self) -> Layout {
-        let start = self.bump().start;
-        let chart = self.name("the name of a chart");
+        let start = self.cur.start;
+        let chart = self.head(|p| {
+            p.bump();
+            p.name("the name of a chart")
+        });
         let open = self.here();
         let mut places = Vec::new();
         if self.expect(Tok::LBrace, "`{` and the places") {
             self.skip_semis();
-            while let Some(place) = self.place_at() {
+            while let Some(place) = self.line(Parser::place_at) {
                 places.push(place);
                 self.skip_semis();
             }

@@ -1,11 +1,11 @@
 //! Blocks and statements of Structured Text.
 
-use super::Parser;
+use super::{Parser, meant};
 use crate::lexer::Tok;
-use crate::words::St;
+use crate::words::{self, St};
 use crate::{il, ladder};
 use g7_model::{
-    Block, Body, BodyLang, CaseArm, Expr, ExprKind, Local, Path, Problem, Stmt, StmtKind, Work, codes,
+    Block, Body, BodyLang, CaseArm, Expr, ExprKind, Local, Path, Problem, Span, Stmt, StmtKind, Work, codes,
 };
 
 impl Parser<'_> {
@@ -31,14 +31,18 @@ impl Parser<'_> {
         let mut locals = Vec::new();
         self.skip_semis();
         while self.at_word("var") {
-            let start = self.bump().start;
-            let names = self.names("the name of a variable");
-            let ty = self.typed();
-            let init = self.initial_value();
-            locals.push(Local { names, ty, init, at: self.since(start).into() });
+            locals.push(self.line(Parser::local));
             self.skip_semis();
         }
         locals
+    }
+
+    fn local(&mut self) -> Local {
+        let start = self.bump().start;
+        let names = self.names("the name of a variable");
+        let ty = self.typed();
+        let init = self.initial_value();
+        Local { names, ty, init, at: self.since(start).into() }
     }
 
     /// `st { … }`, `{ … }`, `il { … }` or `ld { … }`.
@@ -109,6 +113,7 @@ impl Parser<'_> {
         let mut list = Vec::new();
         loop {
             self.skip_semis();
+            self.misspelt_end();
             if matches!(self.cur.kind, Tok::End | Tok::RBrace) || self.at_closing_word() {
                 return list;
             }
@@ -123,6 +128,32 @@ impl Parser<'_> {
                 _ => self.lost_statement(start),
             }
         }
+    }
+
+    /// Reads `ENDIF`, `END IF` or `END_IFF` as the word that was meant.
+    fn misspelt_end(&mut self) {
+        let word = self.word();
+        let begins = word.get(..3).is_some_and(|w| w.eq_ignore_ascii_case("end"));
+        if !begins || words::st(word).is_some() {
+            return;
+        }
+        let next = self.peek();
+        let at = self.here();
+        let joined = format!("END_{}", self.slice(next).to_ascii_uppercase());
+        let two = word.len() == 3 && next.kind == Tok::Word && words::END.contains(&&*joined);
+        let likely = if two { Some(&*joined) } else { words::similar(word, &words::END) };
+        let called = matches!(next.kind, Tok::Assign | Tok::Eq | Tok::LParen | Tok::PathDot);
+        let Some(near) = likely.and_then(|m| words::END.into_iter().find(|w| *w == m)).filter(|_| !called)
+        else {
+            return;
+        };
+        let at = if two { Span { end: next.end, ..at } } else { at };
+        let what = format!("`{}` is no word of Structured Text", self.text_at(at));
+        self.report(at, || meant(Problem::new(&codes::UNKNOWN_WORD, at, what), near));
+        if two {
+            self.bump();
+        }
+        self.corrected = Some((self.cur.start, near));
     }
 
     /// The words that end the statements of a construct.
@@ -164,7 +195,7 @@ impl Parser<'_> {
     }
 
     fn statement(&mut self) -> Option<StmtKind> {
-        let Some(word) = self.st_word() else { return self.simple_statement() };
+        let Some(word) = self.st_word() else { return self.statement_line(Parser::simple_statement) };
         let nesting = matches!(word, St::If | St::Case | St::For | St::While | St::Repeat);
         if !nesting {
             self.bump();
@@ -190,9 +221,10 @@ impl Parser<'_> {
 
     fn then_word(&mut self, word: St, text: &str) {
         if !self.eat_st(word) {
-            self.expected(&format!("`{text}`"));
-            // Reports the braces of other languages.
-            self.eat(Tok::LBrace);
+            self.expected_help(
+                &format!("`{text}`"),
+                Some("blocks have words and no braces: `IF a THEN … END_IF`"),
+            );
         }
     }
 
@@ -200,7 +232,14 @@ impl Parser<'_> {
         if !self.eat_st(word) {
             let (at, words) = self.expected_words(&format!("`{text}`"));
             self.report(at, || {
-                Problem::new(&codes::UNCLOSED, at, words).related(open, "the statement begins here")
+                let help = if word == St::EndIf {
+                    "each IF has an END_IF of its own; `ELSE IF` begins another one, `ELSIF` does not".into()
+                } else {
+                    format!("write `{text}` behind its statements")
+                };
+                Problem::new(&codes::UNCLOSED, at, words)
+                    .related(open, "the statement begins here")
+                    .help(help)
             });
         }
     }
@@ -213,6 +252,12 @@ impl Parser<'_> {
         loop {
             let condition = self.condition();
             self.then_word(St::Then, "THEN");
+            if self.eat(Tok::LBrace) {
+                // The braces of other languages are read to their end.
+                arms.push((condition, self.statements(false)));
+                self.eat(Tok::RBrace);
+                return StmtKind::If(arms, otherwise);
+            }
             arms.push((condition, self.statements(false)));
             if !self.eat_st(St::Elsif) {
                 break;
@@ -337,7 +382,7 @@ impl Parser<'_> {
     /// `:=`, or `=` with a problem.
     pub(super) fn assign_sign(&mut self) -> bool {
         if self.at(Tok::Eq) {
-            self.slip(self.here(), "`=` compares; an assignment is written `:=`", "write `:=`");
+            self.slip_to(self.here(), "`=` compares; an assignment is written `:=`", ":=");
             self.bump();
             return true;
         }
@@ -365,7 +410,8 @@ impl Parser<'_> {
 
     /// The rest of `target := value`.
     pub(super) fn assignment(&mut self, target: Expr) -> StmtKind {
-        if matches!(self.cur.kind, Tok::Plus | Tok::Minus) && matches!(self.peek().kind, Tok::Eq | Tok::Plus)
+        if matches!(self.cur.kind, Tok::Plus | Tok::Minus)
+            && matches!(self.peek().kind, Tok::Eq | Tok::Plus | Tok::Minus)
         {
             let sign = self.slice(self.cur);
             let name = if let ExprKind::Path(p) = &target.kind { p.text() } else { "n".into() };

@@ -1,7 +1,7 @@
 //! Declarations of variables, and types.
 
-use super::Parser;
-use crate::lexer::Tok;
+use super::{Parser, meant};
+use crate::lexer::{Tok, Token};
 use crate::words;
 use g7_iec::constant;
 use g7_model::{Expr, Name, Param, Problem, Type, VarDecl, VarKind, codes};
@@ -50,11 +50,13 @@ impl Parser<'_> {
             decl.comment = self.comment_if();
             return true;
         }
+        let token = self.behind_line_end().unwrap_or(self.cur);
+        let word = self.slice(token);
         // In a chart, a step may have the name of one of these words.
-        let word = self.word();
-        if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition() {
+        if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition(token) {
             return false;
         }
+        self.pass_line_end();
         let at = self.here();
         let (fits, where_to) = match word {
             "at" => (decl.kind != VarKind::Const, "`input`, `output` or `var`"),
@@ -76,8 +78,8 @@ impl Parser<'_> {
         true
     }
 
-    fn before_transition(&mut self) -> bool {
-        matches!(self.peek().kind, Tok::Arrow | Tok::Colon)
+    fn before_transition(&self, token: Token) -> bool {
+        matches!(self.lexer.ahead(token).token().kind, Tok::Arrow | Tok::Colon | Tok::Output)
     }
 
     /// `%I0.0`, a number, a name or a text.
@@ -91,7 +93,16 @@ impl Parser<'_> {
             let token = self.bump();
             return Some(Name::new(self.string(token), at));
         }
+        let start = self.cur.start;
         let name = self.name_if();
+        if name.is_some() && self.at(Tok::PathDot) {
+            while self.eat(Tok::PathDot) {
+                self.bump();
+            }
+            let at = self.since(start);
+            let text = self.text_at(at);
+            self.slip_to(at, "a direct address begins with `%`", &format!("%{text}"));
+        }
         if name.is_none() {
             self.expected("an address such as `%I0.0`, or the name of a channel");
         }
@@ -117,7 +128,25 @@ impl Parser<'_> {
             return None;
         }
         self.assign_sign();
-        Some(self.expr())
+        let value = self.expr();
+        self.decimal_comma();
+        Some(value)
+    }
+
+    /// Tells of `1,5`, and passes it.
+    fn decimal_comma(&mut self) {
+        let (whole, comma) = (self.prev, self.cur);
+        if whole.kind != Tok::Int || comma.kind != Tok::Comma || comma.start != whole.end {
+            return;
+        }
+        let part = self.peek();
+        if part.kind == Tok::Int && part.start == comma.end {
+            self.bump();
+            self.bump();
+            let at = self.since(whole.start);
+            let text = format!("{}.{}", self.slice(whole), self.slice(part));
+            self.slip_to(at, "a number has a decimal point", &text);
+        }
     }
 
     fn known_type(&self) -> Option<Type> {
@@ -154,17 +183,41 @@ impl Parser<'_> {
         let word = self.word();
         let at = self.here();
         let names: Vec<&str> = Type::names().collect();
+        let upper = word.to_ascii_uppercase();
+        let composed = matches!(&*upper, "ARRAY" | "STRUCT");
+        let other = match &*upper {
+            "INTEGER" | "SHORT" => Some(Type::Int),
+            "BOOLEAN" | "BIT" => Some(Type::Bool),
+            "LONG" => Some(Type::Dint),
+            "FLOAT" => Some(Type::Real),
+            "DOUBLE" => Some(Type::Lreal),
+            "CHAR" | "WSTRING" | "TEXT" => Some(Type::STRING),
+            _ => None,
+        };
         self.report(at, || {
             let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no type `{word}`"));
-            match (words::similar(word, &names), word.to_ascii_uppercase().as_str()) {
-                (_, "BYTE" | "WORD" | "DWORD" | "LWORD") => {
-                    problem.help("there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits")
-                }
-                (Some(near), _) => problem.help(format!("did you mean `{near}`?")),
-                _ => problem,
+            if let Some(other) = other {
+                return meant(problem, other.name());
             }
+            problem.help(match (&*upper, words::similar(word, &names)) {
+                ("BYTE" | "WORD" | "DWORD" | "LWORD", _) => {
+                    "there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits".into()
+                }
+                ("ARRAY" | "STRUCT", _) => "declare one variable for each element".into(),
+                ("DATE" | "TOD" | "DT" | "TIME_OF_DAY" | "DATE_AND_TIME" | "LTIME", _) => {
+                    "the only type of times is TIME".into()
+                }
+                (_, Some(near)) => format!("did you mean `{near}`?"),
+                _ => format!("there are {}", names.join(", ")),
+            })
         });
         self.bump();
+        // The rest of the type.
+        while composed
+            && !matches!(self.cur.kind, Tok::Line | Tok::Semi | Tok::Comment | Tok::RBrace | Tok::End)
+        {
+            self.bump();
+        }
     }
 
     /// `(a : INT, b : REAL)`.

@@ -49,7 +49,7 @@ pub(crate) struct Graph {
     #[arg(long, value_name = "NUMBER", default_value_t = 300)]
     most: usize,
     /// The profile to use instead of the file's own.
-    #[arg(long, value_parser = values::profile)]
+    #[arg(long, value_parser = values::profiles())]
     profile: Option<ProfileName>,
     /// Stop after this time.
     #[arg(long, value_parser = values::duration, value_name = "TIME", default_value = "60s")]
@@ -57,6 +57,9 @@ pub(crate) struct Graph {
     /// Memory for states, in MiB.
     #[arg(long, value_name = "MIB", default_value_t = 1024)]
     memory: usize,
+    /// Replace an output that is there and that g7 did not write; never the chart itself.
+    #[arg(long)]
+    force: bool,
     /// Most states of the search.
     #[arg(long, value_name = "NUMBER", default_value_t = 20_000_000)]
     states: usize,
@@ -75,7 +78,9 @@ enum Form {
 
 pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
     let form = form(args)?;
-    let source = sources::load(&files::one(&args.file)?, 0)?;
+    let path = files::one(&args.file)?;
+    files::refuse_foreign(args.output.as_deref(), &[&path], args.force)?;
+    let source = sources::load(&path, 0)?;
     let (asked, found) =
         if source.has_errors() { (None, Vec::new()) } else { ask(&source.document, args.profile) };
     let problems: Vec<_> = source.problems.iter().cloned().chain(found).collect();

@@ -95,7 +95,7 @@ impl Named<'_> {
         };
         let graph = self.graph;
         let mut all = json!({
-            "file": file, "complete": graph.open.is_none(), "states": graph.states, "scans": graph.scans,
+            "tool": "g7 graph", "file": file, "complete": graph.open.is_none(), "states": graph.states, "scans": graph.scans,
             "nodes": graph.nodes.iter().enumerate().map(node).collect::<Vec<_>>(),
             "edges": graph.edges.iter().map(edge).collect::<Vec<_>>(),
         });

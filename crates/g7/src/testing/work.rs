@@ -1,0 +1,106 @@
+//! The files of `g7 test`, shared among threads; results come in the order of the files.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::mpsc::channel;
+
+use g7_host::WallClock;
+use g7_rig::testing::{self, Coverage, Options, Outcome, Unproved};
+
+use crate::cli::Test;
+use crate::failure::Failure;
+use crate::report::{self, Tally};
+use crate::sources;
+
+/// What came of a file.
+pub(super) struct Done {
+    pub(super) name: String,
+    pub(super) outcomes: Vec<Outcome>,
+    pub(super) coverage: Coverage,
+    pub(super) unproved: Vec<Unproved>,
+    /// Its problems, if there are errors among them: then no test of it was run.
+    pub(super) told: Option<String>,
+    /// The tests that were left out behind a failure.
+    pub(super) not_run: usize,
+}
+
+/// Runs the tests of the files and hands each result on.
+pub(super) fn share(
+    args: &Test,
+    paths: &[PathBuf],
+    mut take: impl FnMut(Done) -> Result<(), Failure>,
+) -> Result<(), Failure> {
+    let (next, failed, given_up) = (AtomicUsize::new(0), AtomicBool::new(false), AtomicBool::new(false));
+    let threads = args
+        .jobs
+        .map_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get), usize::from);
+    let (give, results) = channel();
+    std::thread::scope(|scope| {
+        for _ in 0..threads.min(paths.len()).max(1) {
+            let give = give.clone();
+            let (next, failed, given_up) = (&next, &failed, &given_up);
+            scope.spawn(move || {
+                while !given_up.load(Ordering::Relaxed) {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    let Some(path) = paths.get(number) else { break };
+                    if give.send((number, one(args, path, failed))).is_err() {
+                        break;
+                    }
+                }
+            });
+        }
+        // With this one gone, the results end when the threads do.
+        drop(give);
+        let mut waiting = std::collections::BTreeMap::new();
+        let mut taken = 0;
+        while taken < paths.len() {
+            let Ok((number, done)) = results.recv() else { break };
+            waiting.insert(number, done);
+            while let Some(done) = waiting.remove(&taken) {
+                taken += 1;
+                if let Err(failure) = done.and_then(&mut take) {
+                    given_up.store(true, Ordering::Relaxed);
+                    return Err(failure);
+                }
+            }
+        }
+        Ok(())
+    })
+}
+
+fn one(args: &Test, path: &Path, failed: &AtomicBool) -> Result<Done, Failure> {
+    let source = sources::load(path, 0)?;
+    let filter = args.filter.as_deref();
+    let wanted = source.tests().filter(|t| filter.is_none_or(|f| t.title.contains(f))).count();
+    let mut done = Done {
+        name: source.name.clone(),
+        outcomes: Vec::new(),
+        coverage: Coverage::default(),
+        unproved: testing::unproved(&source),
+        told: None,
+        not_run: 0,
+    };
+    if args.fail_fast && failed.load(Ordering::Relaxed) {
+        done.not_run = wanted;
+        return Ok(done);
+    }
+    let options = Options {
+        profile: args.profile,
+        scan: args.scan,
+        filter,
+        limit: Some(args.timeout),
+        fail_fast: args.fail_fast,
+    };
+    let (outcomes, problems) =
+        testing::file(&source, options, &mut done.coverage, &mut WallClock::default(), &mut || {})?;
+    if Tally::of(&problems).errors > 0 {
+        done.told = Some(report::text(&source, &problems));
+    } else {
+        done.not_run = wanted - outcomes.len();
+    }
+    if done.told.is_some() || outcomes.iter().any(|o| o.defect.is_some()) {
+        failed.store(true, Ordering::Relaxed);
+    }
+    done.outcomes = outcomes;
+    Ok(done)
+}
