@@ -178,7 +178,7 @@ fn try_all(from: &str, text: &str, wrong: &mut Vec<String>, counts: &mut [usize;
         }
         counts[0] += 1;
         if ["g7 prove", "g7 compare", "g7 graph"].iter().any(|begin| command.starts_with(begin)) {
-            // What is proved of a small chart is proved in a moment.
+            // A small chart is proved in a moment.
             let mut all = Vec::new();
             charts(folder.root(), &mut all);
             all.iter().for_each(|path| std::fs::write(path, SMALL).expect("written"));
