@@ -17,7 +17,7 @@ pub struct TextEdit {
 /// One way to solve a problem: all its edits belong together.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
-    /// What it does, as an order: ``write `step` ``. Lower case, no full stop, names in back-ticks.
+    /// Its effect, as an order: ``write `step` ``. Lower case, no full stop, names in back-ticks.
     pub label: String,
     /// The edits; they do not overlap, and none is in another file than the problem.
     pub edits: Vec<TextEdit>,
