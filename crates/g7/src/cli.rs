@@ -221,7 +221,7 @@ pub(crate) struct Fmt {
 Examples:
   g7 run examples/bead-sorter                      in the terminal; ? shows the keys
   g7 run tank --headless --for 60s                 no terminal: prints a chronogram
-  g7 run tank --headless --for 60s --trace out.vcd for GTKWave; .csv for a spreadsheet
+  g7 run tank --headless --for 60s --trace out.vcd  for GTKWave; .csv for a spreadsheet
   g7 run tank --headless --set start=1@2s --set start=0@2.5s
   g7 run tank --profile iec61131 --scan 40ms       under other rules of evolution
   g7 run tank --plant tank.fmu --wire h=level      an FMU is the plant
@@ -289,7 +289,7 @@ pub(crate) struct Run {
 #[command(after_help = format!("\
 Examples:
   g7 test                         the tests of every .g7 file in this folder and below
-  g7 test tank --filter bottles   only tests with `bottles` in the title
+  g7 test tank --filter batch     only tests with `batch` in the title
   g7 test tank --list             their titles
   g7 test tank --fail-fast        only up to the first that fails
   g7 test tank --coverage         which steps, transitions, actions no test reached

@@ -1,5 +1,5 @@
-//! Whether the user or the system wants a run to end: Ctrl-C, or SIGTERM, which services and containers send.
-//! What is asked for is written then. A second signal ends the program at once.
+//! The end of a run that the user or the system wants: Ctrl-C, or SIGTERM, which services and containers send.
+//! All that is asked for is written then. A second signal ends the program at once.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};

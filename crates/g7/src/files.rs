@@ -36,7 +36,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
     g7_host::write_whole(path, bytes).map_err(|e| Failure::Write(path.to_path_buf(), e))
 }
 
-/// What is in the files that commands write again and again: pictures, records, reports. A file with one of
+/// Marks in the files that commands write again and again: pictures, records, reports. A file with one of
 /// these is replaced unasked.
 const OURS: [&[u8]; 9] = [
     b"<g class=\"g7\">",
@@ -49,7 +49,7 @@ const OURS: [&[u8]; 9] = [
     b"digraph situations {",
     b"\"tool\": \"g7 graph\"",
 ];
-/// What a trace begins with.
+/// The beginning of a trace.
 const TRACE: &[u8] = b"time,";
 /// The end of a PDF that G7 wrote; readers of PDF take it as a comment.
 pub(crate) const PDF_MARK: &[u8] = b"\n%g7\n";

@@ -1,4 +1,4 @@
-//! What the logs of SARIF 2.1.0 (OASIS, 2020) have in common: `check` and `prove` write them, for tools of
+//! The common part of logs of SARIF 2.1.0 (OASIS, 2020): `check` and `prove` write them, for tools of
 //! code review.
 
 use serde_json::{Value, json};

@@ -145,7 +145,7 @@ fn fmt_shows_what_would_change_and_writes_nothing() {
     assert!(!ran.out.contains("./chart.g7\n"), "the diff names the file: {}", ran.out);
     assert_eq!(folder.g7(&["fmt", "--diff"]).is(0).out, ran.out);
     assert_eq!(folder.read("chart.g7"), untidy);
-    // What it prints is a patch.
+    // The output is a patch.
     if g7_peers::tool("patch") {
         folder.write("change.diff", &ran.out);
         let status = std::process::Command::new("patch")
@@ -180,7 +180,7 @@ fn a_file_of_no_form_is_one_line() {
             serde_json::from_str(&folder.g7(&["check", "--format", "json", name]).is(1).out).expect("JSON");
         assert_eq!(all["problems"].as_array().map(Vec::len), Some(1));
     }
-    // What begins as a chart is read as one, whatever its name.
+    // A file that begins as a chart is read as one, whatever its name.
     folder.write("chart.txt", PINGPONG);
     folder.g7(&["check", "chart.txt"]).is(0);
 }

@@ -1,4 +1,4 @@
-//! What outputs replace and what they leave alone; records; signals; completions.
+//! Outputs: what they replace and leave alone; records; signals; completions.
 #![allow(missing_docs, reason = "a test")]
 
 mod common;

@@ -73,7 +73,7 @@ pub struct Divergence {
 }
 
 const HEAD: &str = "g7 tape 3";
-/// What a record begins with in every version.
+/// The beginning of a record in every version.
 const ANY_HEAD: &str = "g7 tape ";
 /// The last line of a record, before the number of its scans.
 const END: &str = "end ";

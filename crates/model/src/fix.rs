@@ -8,9 +8,9 @@ use crate::{FileId, Span};
 /// New text in the place of a span; an empty span is a place where text is put in.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextEdit {
-    /// The bytes that go away.
+    /// The text that goes away.
     pub at: Span,
-    /// The text that comes in their place; may be empty.
+    /// The text that comes in its place; may be empty.
     pub text: String,
 }
 

@@ -125,7 +125,7 @@ fn files_are_written_whole() {
     // made by a file of its own; a lock is an empty file; the levels of a search are written whole, but too
     // large to wait for the disk.
     let others = [
-        "host/src/retain.rs",
+        "host/src/whole.rs",
         "online/src/disk.rs",
         "online/src/realtime.rs",
         "g7/src/sole.rs",

@@ -15,7 +15,7 @@ const PAUSE: Duration = Duration::from_millis(200);
 /// Clears the screen and what was scrolled off it.
 const CLEAR: &str = "\u{1b}[H\u{1b}[2J\u{1b}[3J";
 
-/// What tells two states of the files apart.
+/// The files with their times and lengths, which tell two states apart.
 type Seen = Vec<(PathBuf, Option<(SystemTime, u64)>)>;
 
 fn seen(paths: &[PathBuf]) -> Seen {

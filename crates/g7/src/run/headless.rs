@@ -252,7 +252,7 @@ fn columns(recording: &Recording, lanes: &[usize]) -> usize {
     width.saturating_sub(label + 20).max(20)
 }
 
-/// What tells the record of one chart from that of another: the names and types of the inputs. All else may
+/// A hash that tells the record of one chart from that of another: the names and types of the inputs. All else may
 /// change, so that a replay shows what a change of the chart does.
 fn inputs(bench: &Bench) -> u64 {
     let mut hash = Fnv::default();

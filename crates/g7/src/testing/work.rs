@@ -12,7 +12,7 @@ use crate::failure::Failure;
 use crate::report::{self, Tally};
 use crate::sources;
 
-/// What came of a file.
+/// The results of a file.
 pub(super) struct Done {
     pub(super) name: String,
     pub(super) outcomes: Vec<Outcome>,

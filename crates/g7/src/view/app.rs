@@ -60,7 +60,7 @@ pub(super) struct Edit {
     /// The position in [`Bench::items`].
     pub(super) item: usize,
     pub(super) text: String,
-    /// What is wrong with the text that was to be taken; empty as soon as it is changed.
+    /// The fault of the text that was to be taken; empty as soon as it is changed.
     pub(super) why: String,
 }
 
