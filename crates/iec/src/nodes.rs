@@ -146,6 +146,18 @@ pub fn and(a: Expr, b: Expr, at: Span) -> Expr {
     }
 }
 
+/// The parts of a condition that are joined by AND.
+pub fn conjuncts(e: &Expr) -> Vec<&Expr> {
+    match &e.kind {
+        ExprKind::Binary(BinaryOp::And, a, b) => {
+            let mut all = conjuncts(a);
+            all.append(&mut conjuncts(b));
+            all
+        }
+        _ => vec![e],
+    }
+}
+
 /// `a or b`, simplified if an operand is TRUE or FALSE.
 pub fn or(a: Expr, b: Expr, at: Span) -> Expr {
     match (truth(&a), truth(&b)) {

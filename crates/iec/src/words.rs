@@ -14,6 +14,11 @@ TIME_OF_DAY TO TOD TOF TON TP TRANSITION TRUE TRUNC TYPE UDINT UINT ULINT UNTIL 
 VAR_ACCESS VAR_CONFIG VAR_EXTERNAL VAR_GLOBAL VAR_INPUT VAR_IN_OUT VAR_OUTPUT VAR_TEMP WHILE WITH \
 WORD WSTRING XOR";
 
+/// Those of them that are standard functions and function blocks.
+const FUNCTIONS: &str = "ABS ACOS ADD ASIN ATAN CONCAT COS CTD CTU CTUD DELETE DIV EQ EXP EXPT FIND F_TRIG GE GT INSERT LE \
+LEFT LEN LIMIT LN LOG LT MAX MID MIN MOVE MUL MUX NE REPLACE RIGHT ROL ROR RS R_TRIG SEL SHL SHR SIN SQRT \
+SR SUB TAN TOF TON TP TRUNC";
+
 /// Words with a meaning in their own places: operators of Instruction List, qualifiers, formal
 /// parameters of function blocks and tasks. Some compilers refuse them anywhere.
 const IN_PLACES: &str = "ANDN CAL CALC CALCN CD CLK CU CV D DS ET IN INTERVAL JMP JMPC JMPCN L LD LDN N NEG ORN P P0 P1 \
@@ -34,6 +39,12 @@ const CLOSING: [&str; 8] = [
 /// The words that no program of the standard may give to anything.
 pub(crate) fn everywhere() -> impl Iterator<Item = &'static str> {
     EVERYWHERE.split_whitespace()
+}
+
+/// True if a word in upper case is the name of a standard function or function block, which matiec takes as the
+/// name of a step, but not of a variable.
+pub(crate) fn is_function(upper: &str) -> bool {
+    FUNCTIONS.split_whitespace().any(|word| word == upper)
 }
 
 /// True if a word, in any case, has a meaning of its own somewhere in the standard.

@@ -31,8 +31,11 @@ type Write = fn(&Document) -> Written;
 type Read = fn(&[u8], FileId) -> (Document, Vec<Problem>);
 
 /// The forms, by name.
-const FORMS: [(&str, Write, Read); 2] =
-    [("PLCopen XML", whole, plcopen::import), ("text", sfc::export, sfc::import)];
+const FORMS: [(&str, Write, Read); 3] = [
+    ("PLCopen XML", whole, plcopen::import),
+    ("CODESYS", codesys, plcopen::import),
+    ("text", sfc::export, sfc::import),
+];
 
 /// The project with all that the standard can say. For Beremiz and OpenPLC the actions stand in a step of their own;
 /// `tests/tests/interop.rs` runs those projects.
@@ -40,10 +43,16 @@ fn whole(document: &Document) -> Written {
     plcopen::export_for(document, plcopen::Dialect::Standard)
 }
 
+/// The project for CODESYS: bodies beside steps, and the names of programs before those of their variables.
+fn codesys(document: &Document) -> Written {
+    plcopen::export_for(document, plcopen::Dialect::Codesys)
+}
+
 /// Cases that run otherwise in a form, which the export tells as a warning: what runs on
 /// clearing runs behind the evolution, and in text the initial step stands first.
-const OTHERWISE: [(&str, &str); 3] = [
+const OTHERWISE: [(&str, &str); 4] = [
     ("PLCopen XML", "side-by-side/order-clearing"),
+    ("CODESYS", "side-by-side/order-clearing"),
     ("text", "side-by-side/order-clearing"),
     ("text", "side-by-side/order-exit-entry"),
 ];

@@ -16,10 +16,10 @@ use crate::xml::attr::Text;
 
 /// The identifier by which CODESYS marks the action that runs in each scan while the step is
 /// active.
-const STEP_ACTION: &str = "700a583f-b4d4-43e4-8c14-629c7cd3bec8";
+pub(super) const STEP_ACTION: &str = "700a583f-b4d4-43e4-8c14-629c7cd3bec8";
 /// The identifiers of its actions on activation and on deactivation.
-const ENTRY_ACTION: &str = "a6b08bd8-b696-47e3-9cbf-7408b61c9ff8";
-const EXIT_ACTION: &str = "a2621e18-7de3-4ea6-ae6d-89e9e0b7befd";
+pub(super) const ENTRY_ACTION: &str = "a6b08bd8-b696-47e3-9cbf-7408b61c9ff8";
+pub(super) const EXIT_ACTION: &str = "a2621e18-7de3-4ea6-ae6d-89e9e0b7befd";
 /// Further attributes of a step in CODESYS that name no action.
 const NO_ACTIONS: [&str; 5] = [
     "38391c6d-6d4a-42f8-8ee7-9f45e5adafa8",

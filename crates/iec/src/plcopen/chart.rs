@@ -11,7 +11,7 @@ use g7_model::{
 
 use super::actions;
 use super::bodies::Place;
-use super::draft::{Draft, Maker, Order, block, guarded, kept};
+use super::draft::{Draft, Maker, Order, block, guarded, kept, lacking};
 use super::flow::{self, Way};
 use super::graph::Graph;
 use super::tree::{self, Language, Xml, documentation, head, kid, tag, text, word};
@@ -223,7 +223,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
         let node = object.node;
         let at = self.coder.report.span(&head(node));
         let mut receptivity = self.condition(draft, way.transition);
-        if let Some(guard) = draft.guard.clone() {
+        if let Some(guard) = draft.guard.as_ref().and_then(|g| lacking(g, &receptivity)) {
             receptivity = nodes::and(guard, receptivity, at);
         }
         Transition {

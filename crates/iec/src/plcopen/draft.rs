@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Block, Chart, ChartItem, ChartKind, Expr, Layout, Nanos, Stmt, VarDecl};
+use g7_model::{Block, Chart, ChartItem, ChartKind, Expr, Layout, Nanos, Stmt, StmtKind, VarDecl};
 
 use super::bodies::{Callee, Coder, Place};
 use super::graph::Graph;
@@ -64,8 +64,27 @@ pub(super) fn block(statements: Vec<Stmt>, at: g7_model::Span) -> Block {
     Block { locals: Vec::new(), statements, at: at.into() }
 }
 
+/// The parts of a guard that a condition does not have yet. A program may test for itself what CODESYS tests
+/// anyway, as the files do that are written here.
+pub(super) fn lacking(guard: &Expr, condition: &Expr) -> Option<Expr> {
+    let there = nodes::conjuncts(condition);
+    let missing = nodes::conjuncts(guard).into_iter().filter(|part| !there.contains(part));
+    missing.cloned().reduce(|a, b| nodes::and(a, b, guard.at.0))
+}
+
 /// Statements that run only under a guard.
 pub(super) fn guarded(guard: Option<&Expr>, statements: Vec<Stmt>, at: g7_model::Span) -> Vec<Stmt> {
+    let tested = match statements.as_slice() {
+        [Stmt { kind: StmtKind::If(arms, otherwise), .. }] if otherwise.is_empty() => match arms.as_slice() {
+            [(condition, _)] => Some(condition),
+            _ => None,
+        },
+        _ => None,
+    };
+    let guard = match tested {
+        Some(condition) => guard.and_then(|g| lacking(g, condition)),
+        None => guard.cloned(),
+    };
     match guard {
         Some(guard) if !statements.is_empty() => {
             vec![nodes::when(guard.clone(), statements, Vec::new(), at)]

@@ -164,6 +164,7 @@ impl<'a> Planner<'_, 'a> {
                 *shared.entry(name).or_default() += 1;
             }
         }
+        let programs = project.pous.iter().filter(|p| p.kind == PouKind::Program).count();
         for (index, pou) in project.pous.iter().enumerate() {
             if pou.kind != PouKind::Program {
                 continue;
@@ -181,7 +182,13 @@ impl<'a> Planner<'_, 'a> {
                 let interval = run.and_then(|r| r.interval).filter(|i| Some(*i) != shortest);
                 let chart = run.filter(|_| several).map_or(name, |r| r.name.as_str()).to_string();
                 let node = run.map_or(pou.node, |r| r.node);
-                let own = |upper: &String| !several && shared.get(upper) == Some(&1);
+                // Beside other programs, the variables of a chart are its own: others name them by it.
+                let apart = is_chart(pou) && programs > 1;
+                let flag =
+                    |upper: &str| is_chart(pou) && matches!(upper, "SFCRESET" | "SFCINIT" | "SFCPAUSE");
+                let own = |upper: &String| {
+                    !several && !apart && !flag(upper.as_str()) && shared.get(upper) == Some(&1)
+                };
                 let of_file: HashSet<String> = variables(pou)
                     .filter_map(name_of)
                     .map(|n| n.to_uppercase())

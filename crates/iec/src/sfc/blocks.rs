@@ -56,6 +56,7 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
             continue;
         }
         unit.body = expander.statements(std::mem::take(&mut unit.body), &instances, 0);
+        unit.behind = expander.statements(std::mem::take(&mut unit.behind), &instances, 0);
         for part in &mut unit.parts {
             if let Part::Action { body, .. } = part {
                 *body = expander.statements(std::mem::take(body), &instances, 0);

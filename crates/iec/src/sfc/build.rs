@@ -33,7 +33,10 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
             items.extend(builder.variables(unit).into_iter().map(Item::Var));
             builder.lost_actions(unit);
             let list = if builder.is_late(number) { &mut behind } else { &mut before };
-            list.push(unit);
+            list.push((unit, &unit.body));
+            if !unit.behind.is_empty() {
+                behind.push((unit, &unit.behind));
+            }
             continue;
         }
         let (of_file, unit) = builder.unit(unit, alone);
@@ -176,20 +179,20 @@ impl Builder<'_> {
     }
 
     /// The bodies of programs without steps, in order.
-    fn code(&mut self, mut units: Vec<&Unit>) -> Option<(Body, g7_model::Place)> {
-        let turn = |u: &&Unit| {
+    fn code(&mut self, mut units: Vec<(&Unit, &Vec<Stmt>)>) -> Option<(Body, g7_model::Place)> {
+        let turn = |(u, _): &(&Unit, &Vec<Stmt>)| {
             let here = |i: &super::unit::Instance| i.unit.text.eq_ignore_ascii_case(&u.name.text);
             self.source.instances.iter().position(here).unwrap_or(usize::MAX)
         };
         units.sort_by_key(turn);
-        let at = units.first()?.at;
+        let at = units.first()?.0.at;
         if units.len() > 1 {
-            for unit in units.iter().filter(|u| super::blocks::returns(&u.body, true)) {
+            for (unit, _) in units.iter().filter(|u| super::blocks::returns(u.1, true)) {
                 let what = "RETURN in one of several programs: the others would not run either";
                 self.report.put(Problem::new(&codes::NOT_CARRIED, unit.name.at.0, what));
             }
         }
-        let statements = units.iter().flat_map(|u| u.body.iter().cloned()).collect();
+        let statements = units.iter().flat_map(|u| u.1.iter().cloned()).collect();
         Some((Body::St(Block { locals: Vec::new(), statements, at: at.into() }), at.into()))
     }
 
@@ -225,6 +228,10 @@ impl Builder<'_> {
         } else {
             self.lost_actions(unit);
             items.push(ChartItem::Pre(Body::St(block), unit.at.into()));
+            if !unit.behind.is_empty() {
+                let block = Block { locals: Vec::new(), statements: unit.behind.clone(), at: unit.at.into() };
+                items.push(ChartItem::Post(Body::St(block), unit.at.into()));
+            }
         }
         let every = self.paces.units.get(&unit.name.text.to_uppercase()).copied();
         let chart = Chart {

@@ -3,11 +3,12 @@
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> st (lexer, parser) -> read (units) -> build (Document) -> st::settle
+//! bytes -> st (lexer, parser) -> read (units) -> instances, blocks -> build (Document) -> st::settle
 //! Document -> write -> text
 //! ```
 //!
 //! - `read` turns the file into program organisation units and configurations.
+//! - `instances` makes a unit of each instance of a block with a chart.
 //! - `blocks` replaces calls of the file's own function blocks by their bodies.
 //! - `build` makes a chart of each unit with steps, assigns globals, addresses and intervals of the
 //!   configuration, and reports those that have no place.
@@ -16,6 +17,7 @@
 
 mod blocks;
 mod build;
+mod instances;
 mod read;
 mod unit;
 mod write;
@@ -85,6 +87,7 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
         report.say(&codes::NOT_JGRAFCHART, &(0..end), what);
         return (Document::default(), report.finish());
     }
+    instances::expand(&mut source, &mut report);
     blocks::expand(&mut source, &mut report);
     let document = build::document(source, text.len(), &mut report);
     (document, report.finish())

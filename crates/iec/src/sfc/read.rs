@@ -54,6 +54,7 @@ fn item(p: &mut Parser, source: &mut Source) {
                 vars: std::mem::take(&mut source.globals),
                 parts: Vec::new(),
                 body: Vec::new(),
+                behind: Vec::new(),
                 body_at: 0..0,
                 at: p.since(start),
             };
@@ -98,6 +99,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         vars: Vec::new(),
         parts: Vec::new(),
         body: Vec::new(),
+        behind: Vec::new(),
         body_at: 0..0,
         at: p.since(start),
     };

@@ -25,7 +25,7 @@ pub(super) enum UnitKind {
 }
 
 /// A program organisation unit.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Unit {
     pub(super) kind: UnitKind,
     pub(super) name: Name,
@@ -35,19 +35,21 @@ pub(super) struct Unit {
     pub(super) parts: Vec<Part>,
     /// The statements of a unit without a chart.
     pub(super) body: Vec<Stmt>,
+    /// Statements behind the charts that the unit calls.
+    pub(super) behind: Vec<Stmt>,
     pub(super) body_at: Range<usize>,
     pub(super) at: Span,
 }
 
 /// An element of a chart.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) enum Part {
     Step { name: Name, initial: bool, associations: Vec<Association>, at: Span },
     Transition(Box<Transition>),
     Action { name: Name, body: Vec<Stmt>, at: Span },
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Transition {
     pub(super) label: Option<Name>,
     pub(super) priority: Option<u32>,
@@ -58,7 +60,7 @@ pub(super) struct Transition {
 }
 
 /// An action of a step with its qualifier.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Association {
     pub(super) target: Expr,
     pub(super) qualifier: Qualifier,

@@ -11,7 +11,7 @@ use g7_model::{
 };
 
 use super::bodies::At;
-use super::lower::{Drive, Formula, Lower};
+use super::lower::{Drive, Form, Formula, Lower};
 use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
 
@@ -269,8 +269,9 @@ impl<'d> Lower<'d> {
         let name = self.names.part(home, &action.name.text).unwrap_or(&action.name.text).to_string();
         let own = home.is_none_or(|h| self.program_of(h) == at.program);
         let uses = self.uses.get(&(home, &*action.name.text)).map_or(0, Vec::len);
-        if (drive.condition.is_some() || (!self.final_scan && qualifier != Qualifier::N)) && uses == 1 || !own
-        {
+        let bare = self.form == (Form::Codesys { bare: true });
+        let apart = !self.final_scan && !bare && qualifier != Qualifier::N;
+        if (drive.condition.is_some() || apart) && uses == 1 || !own {
             // The action has no other use, so its body is written in the step.
             let inner = At { chart: home.or(at.chart), ..at.clone() };
             let list = self.block(action.body.block(), &inner, title);

@@ -252,7 +252,7 @@ impl<'d> Lower<'d> {
                 "an enclosing step, which IEC 61131-3 does not have: it has no counterpart there",
             );
         }
-        let in_line = macro_step && self.form == Form::Networks;
+        let in_line = macro_step && self.form.in_line();
         if in_line {
             self.of_macro(key, step, at);
             self.left_out(step.name.at.0, "a macro-step is left out; its expansion stands in its place");
@@ -261,15 +261,15 @@ impl<'d> Lower<'d> {
         let actions = self.actions(key, step, at);
         let kind = match (&step.kind, self.form) {
             (StepKind::Enclosing, _) => StepKind::Plain,
-            (StepKind::Entry | StepKind::Exit, Form::Networks) => StepKind::Plain,
+            (StepKind::Entry | StepKind::Exit, Form::Networks { .. }) => StepKind::Plain,
             (kind, _) => kind.clone(),
         };
         if step.initial && macro_step {
             self.lost(step.name.at.0, "an initial macro-step, which there is not");
         }
         let initial = match self.form {
-            Form::Networks => self.initial(key),
-            Form::Charts => step.initial,
+            Form::Networks { .. } => self.initial(key),
+            Form::Charts | Form::Codesys { .. } => step.initial,
         };
         Some(Step {
             name: Name::new(self.names.step(key), step.name.at.0),
@@ -323,7 +323,7 @@ impl<'d> Lower<'d> {
     /// The step at an end of a transition; for a macro-step in line, its exit or entry step.
     fn end(&mut self, chart: usize, name: &Name, entry: bool, depth: usize) -> Name {
         let Some(key) = self.scopes.step_in(chart, &name.text) else { return name.clone() };
-        let inner = self.scopes.expansion(key).filter(|_| self.form == Form::Networks && depth < DEEPEST);
+        let inner = self.scopes.expansion(key).filter(|_| self.form.in_line() && depth < DEEPEST);
         let Some(inner) = inner else { return Name::new(self.names.step(key), name.at.0) };
         let wanted = if entry { StepKind::Entry } else { StepKind::Exit };
         match self.scopes.steps_of(inner).find(|(_, s)| s.kind == wanted) {
@@ -334,7 +334,7 @@ impl<'d> Lower<'d> {
 
     fn receptivity(&mut self, e: &Expr, at: &At<'d>) -> Expr {
         match &e.kind {
-            ExprKind::Path(path) if self.form == Form::Charts => {
+            ExprKind::Path(path) if !self.form.in_line() => {
                 if let Some(Ref::Section(home, section)) = self.scopes.refer(at.chart, &path.names)
                     && let Some(name) = self.names.part(home, &section.name.text)
                 {
@@ -353,7 +353,9 @@ impl<'d> Lower<'d> {
         let span = action.at.0;
         let mut list = self.block(action.body.block(), at, &name);
         let uses = self.uses.get(&(home, &*action.name.text)).cloned().unwrap_or_default();
-        if !self.final_scan && uses.iter().all(|u| u.1 == Qualifier::N) {
+        if self.form == (Form::Codesys { bare: true }) {
+            // The step runs the body alone, as CODESYS does.
+        } else if !self.final_scan && uses.iter().all(|u| u.1 == Qualifier::N) {
             let mut is = nodes::boolean(false, span);
             for (step, _) in &uses {
                 if self.program_of(step.0) != at.program {
@@ -377,7 +379,7 @@ impl<'d> Lower<'d> {
 
     /// A section of a program. In text its value is written where it is named.
     fn section(&mut self, home: Option<usize>, section: &'d Section, at: &At<'d>) -> Option<Section> {
-        if self.form == Form::Networks {
+        if self.form.in_line() {
             return None;
         }
         let name = self.names.part(home, &section.name.text).unwrap_or(&section.name.text).to_string();
@@ -439,7 +441,7 @@ impl<'d> Lower<'d> {
             };
             let place = places.get(program).copied().flatten();
             let expansion = chart.kind == ChartKind::Expansion;
-            if let Some(known) = place.filter(|_| self.form == Form::Networks)
+            if let Some(known) = place.filter(|_| self.form.in_line())
                 && let Some((_, there)) = out.get_mut(known)
             {
                 if let Some(comment) = &chart.comment {
@@ -449,7 +451,7 @@ impl<'d> Lower<'d> {
                 there.items.append(&mut items);
                 continue;
             }
-            let inner = expansion && self.form == Form::Charts;
+            let inner = expansion && !self.form.in_line();
             if inner && let Some(vars) = self.new_vars.get_mut(program) {
                 // Variables of an expansion belong to the program.
                 let (own, rest) = items.into_iter().partition(|i| matches!(i, ChartItem::Var(_)));
@@ -465,8 +467,11 @@ impl<'d> Lower<'d> {
             } else {
                 let text = match self.form {
                     // Compilers treat the name as visible within the program as well.
-                    Form::Networks => self.names.give(None, &head.name, "", ""),
+                    Form::Networks { .. } => self.names.give(None, &head.name, "", ""),
                     Form::Charts => self.names.give_unit(&head.name),
+                    Form::Codesys { .. } => {
+                        self.units.get(program).cloned().unwrap_or_else(|| head.name.text.to_string())
+                    }
                 };
                 Name::new(text, chart.name.at.0)
             };
@@ -497,7 +502,7 @@ impl<'d> Lower<'d> {
 
     /// The places of the symbols, for charts that are carried over whole.
     fn layouts(&self, charts: &[(usize, Chart)]) -> Vec<Layout> {
-        if self.form == Form::Networks {
+        if self.form.in_line() {
             return Vec::new();
         }
         let of_item = |i: &'d Item| if let Item::Layout(l) = i { Some(l) } else { None };

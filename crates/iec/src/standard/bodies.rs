@@ -98,8 +98,9 @@ impl<'d> Lower<'d> {
             Some(Ref::Var(key)) if at.condition && self.moved.contains(&key) => self.copy(key, span),
             Some(Ref::Var(key)) => self.variable(key, span, at),
             Some(Ref::Member(key, member)) if !at.function => {
-                let name = self.var_name(key, at);
-                nodes::name(&[&name, member], span)
+                let mut names = self.var_names(key, at);
+                names.push(member.to_string());
+                named(&names, span)
             }
             Some(Ref::Active(step)) if !at.function => self.active(step, span, at, 0),
             Some(Ref::Time(step)) if !at.function && self.scan_clock => self.counted(step, false, span, at),
@@ -124,18 +125,23 @@ impl<'d> Lower<'d> {
     }
 
     pub(super) fn variable(&mut self, key: VarKey<'d>, span: Span, at: &At<'d>) -> Expr {
-        let name = self.var_name(key, at);
-        nodes::name(&[&name], span)
+        let names = self.var_names(key, at);
+        named(&names, span)
     }
 
-    /// The name of a variable. A variable of another program becomes one of the file.
-    fn var_name(&mut self, key: VarKey<'d>, at: &At) -> String {
-        if let Some(chart) = key.0
-            && self.program_of(chart) != at.program
-        {
-            self.wanted.insert(key);
+    /// The name of a variable. A variable of another program becomes one of the file, or stands behind the name
+    /// of its program.
+    pub(super) fn var_names(&mut self, key: VarKey<'d>, at: &At) -> Vec<String> {
+        let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
+        let Some(chart) = key.0.filter(|c| self.program_of(*c) != at.program) else { return vec![own] };
+        let block = matches!(self.scopes.decl(key).map(|d| d.ty), Some(Type::Fb(_)));
+        match self.program_of(chart).and_then(|p| self.units.get(p)).filter(|_| !block) {
+            Some(unit) => vec![unit.clone(), own],
+            None => {
+                self.wanted.insert(key);
+                vec![own]
+            }
         }
-        self.names.var(key.0, key.1).unwrap_or(key.1).to_string()
     }
 
     pub(super) fn nothing(&mut self, span: Span, what: &str) -> Expr {
@@ -322,6 +328,11 @@ impl<'d> Lower<'d> {
                 let path = Path { names: vec![var.clone()] };
                 self.note(&path, true, at);
                 let name = match self.value(&path, var.at.0, at).kind {
+                    ExprKind::Path(path) if path.names.len() > 1 => {
+                        let what = "FOR counts in a variable of another program";
+                        self.lost(var.at.0, what);
+                        None
+                    }
                     ExprKind::Path(path) => path.names.first().cloned(),
                     _ => None,
                 };
@@ -361,7 +372,7 @@ impl<'d> Lower<'d> {
             && !at.function
         {
             self.note(path, true, at);
-            let name = self.var_name(key, at);
+            let name = self.var_names(key, at).join(".");
             let inputs: Vec<&str> = kind.members().iter().filter(|m| m.2).map(|m| m.0).collect();
             let mut args = self.args(args, at);
             for (arg, place) in args.iter_mut().zip(inputs.iter().map(Some).chain(std::iter::repeat(None))) {
@@ -376,7 +387,7 @@ impl<'d> Lower<'d> {
             }
             return Stmt { kind: StmtKind::Call(nodes::path(&[&name], span), args), at: span.into() };
         }
-        self.lost(span, &format!("a call of `{}` has no counterpart", path.text()));
+        self.lost(span, &no_call(&path.text()));
         nodes::when(nodes::boolean(false, span), Vec::new(), Vec::new(), span)
     }
 
@@ -396,6 +407,21 @@ impl<'d> Lower<'d> {
     pub(super) fn differs(&mut self, span: Span, what: &str) {
         self.problems.push(g7_model::Problem::new(&codes::DIFFERENT, span, what));
     }
+}
+
+/// The reason why a call stands for nothing there.
+fn no_call(called: &str) -> String {
+    match called.to_ascii_uppercase().as_str() {
+        "INITCHART" => "a call of `INITCHART` puts a chart into its initial steps in the midst of a scan, which a chart of IEC 61131-3 cannot: it has a form for CODESYS alone, `IF SFCReset THEN INITCHART(G) END_IF` in the `pre` of `G`; `g7 gen st` holds it everywhere".into(),
+        "CLEARCHART" | "FREEZECHART" | "SETSTEP" | "RESETSTEP" => format!(
+            "a call of `{called}` changes the situation of a chart from outside, which IEC 61131-3 does not have; `g7 gen st` holds it"
+        ),
+        _ => format!("a call of `{called}` has no counterpart"),
+    }
+}
+
+fn named(names: &[String], span: Span) -> Expr {
+    nodes::name(&names.iter().map(String::as_str).collect::<Vec<_>>(), span)
 }
 
 /// A whole number with its sign.

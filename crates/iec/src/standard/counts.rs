@@ -93,7 +93,7 @@ impl<'d> Lower<'d> {
         }
         let Some(ty) = self.scopes.decl(key).map(|d| d.ty) else { return nodes::bad(span) };
         // The copy is made by a program of its own, so the variable becomes one of the file.
-        if key.0.is_some() {
+        if key.0.is_some() && self.units.is_empty() {
             self.wanted.insert(key);
         }
         let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
@@ -107,7 +107,9 @@ impl<'d> Lower<'d> {
         let at = Span::default();
         for (key, name) in &self.copies {
             let own = self.names.var(key.0, key.1).unwrap_or(key.1);
-            body.push(nodes::assign(nodes::name(&[name], at), nodes::name(&[own], at), at));
+            let unit = key.0.and_then(|c| self.program_of(c)).and_then(|p| self.units.get(p));
+            let path: Vec<&str> = unit.map(String::as_str).into_iter().chain([own]).collect();
+            body.push(nodes::assign(nodes::name(&[name], at), nodes::name(&path, at), at));
         }
     }
 

@@ -29,6 +29,8 @@ pub(super) struct Names {
     counts: HashMap<(Owner, String), usize>,
     /// The names of programs that are units of their own.
     units: Taken,
+    /// The same names, in upper case: no variable of all programs has one of them.
+    of_units: HashSet<String>,
     /// Names that had to be changed: the place, the old and the new name.
     pub(super) renamed: Vec<(Span, Box<str>, String)>,
 }
@@ -51,8 +53,15 @@ impl Names {
             twins: HashSet::new(),
             counts: HashMap::new(),
             units: Taken::default(),
+            of_units: HashSet::new(),
             renamed: Vec::new(),
         }
+    }
+
+    /// True if a program or the file gives the name to something.
+    fn declares(&self, owner: Owner, upper: &str) -> bool {
+        let inside = owner.and_then(|p| self.programs.get(p)).is_some_and(|p| p.contains(upper));
+        inside || self.global.contains(upper)
     }
 
     fn has(&self, owner: Owner, upper: &str) -> bool {
@@ -60,7 +69,8 @@ impl Names {
             Some(program) => self.programs.get(program).is_some_and(|p| p.contains(upper)),
             None => self.programs.iter().any(|p| p.contains(upper)),
         };
-        inside || self.reserved.contains(upper) || self.global.contains(upper)
+        let unit = owner.is_none() && self.of_units.contains(upper);
+        inside || unit || self.reserved.contains(upper) || self.global.contains(upper)
     }
 
     /// Gives a name derived from `wish` that is not taken.
@@ -101,6 +111,7 @@ impl Names {
             let text = self.units.give(&wish);
             let upper = text.to_ascii_uppercase();
             if !self.reserved.contains(upper.as_str()) && !self.global.contains(&upper) {
+                self.of_units.insert(upper);
                 break text;
             }
         };
@@ -144,7 +155,10 @@ impl Names {
             let upper = plain.to_ascii_uppercase();
             let of_var = self.of_vars.contains(&(owner, upper.clone()))
                 || self.of_vars.contains(&(None, upper.clone()));
-            let text = if of_var && apart(key) && !self.of_steps.contains(&(owner, upper)) {
+            // A step is never called, so it may have the name of a standard function as well.
+            let of_function = crate::words::is_function(&upper) && !self.declares(owner, &upper);
+            let free = (of_var || of_function) && !self.of_steps.contains(&(owner, upper));
+            let text = if free && apart(key) {
                 self.twins.insert(key);
                 if *plain != *step.name.text {
                     self.renamed.push((step.name.at.0, step.name.text.clone(), plain.clone()));

@@ -17,10 +17,21 @@ pub(super) const DEEPEST: usize = 20;
 /// The kind of program that the format has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Form {
-    /// Charts with the same period are networks of one program, with expansions in line.
-    Networks,
+    /// Charts with the same period are networks of one program, with expansions in line. If it is `drawn`, tools
+    /// make a variable of each step.
+    Networks { drawn: bool },
     /// Each chart is a program, with macro-steps.
     Charts,
+    /// The same, with the variables of each chart in its program: others use them by its name, as in CODESYS.
+    /// Bodies end with their step if those of the document do (`no-final-scan`).
+    Codesys { bare: bool },
+}
+
+impl Form {
+    /// True if expansions stand in line, in networks of one program.
+    pub(super) fn in_line(self) -> bool {
+        matches!(self, Form::Networks { .. })
+    }
 }
 
 /// A document that is being rewritten.
@@ -33,6 +44,8 @@ pub(super) struct Lower<'d> {
     pub(super) programs: Vec<Option<usize>>,
     /// The first chart of each program.
     pub(super) heads: Vec<usize>,
+    /// The name of each program, where others use its variables by that name.
+    pub(super) units: Vec<String>,
     /// The macro-step of each expansion.
     pub(super) owners: HashMap<usize, StepKey>,
     /// The time of a scan.
@@ -132,6 +145,7 @@ impl<'d> Lower<'d> {
             names: Names::new(0),
             programs: Vec::new(),
             heads: Vec::new(),
+            units: Vec::new(),
             owners: HashMap::new(),
             scan: document.cycle(),
             final_scan: final_scan(document),
@@ -209,8 +223,8 @@ impl<'d> Lower<'d> {
             let pace = self.pace(def);
             let same = |head: &usize| self.scopes.chart(*head).is_some_and(|h| self.pace(h) == pace);
             let known = match self.form {
-                Form::Networks => self.heads.iter().position(same),
-                Form::Charts => None,
+                Form::Networks { .. } => self.heads.iter().position(same),
+                Form::Charts | Form::Codesys { .. } => None,
             };
             let program = known.unwrap_or(self.heads.len());
             if known.is_none() {
@@ -281,9 +295,13 @@ impl<'d> Lower<'d> {
                     _ => {}
                 }
             }
-            // In a chart that is drawn, tools make a variable of each step.
-            let apart = |key| self.form == Form::Networks && !self.read_twins.contains(&key);
+            let text = self.form == (Form::Networks { drawn: false });
+            let apart = |key| text && !self.read_twins.contains(&key);
             self.names.give_steps(owner, chart, prefix, &self.scopes, apart);
+        }
+        if let Form::Codesys { .. } = self.form {
+            let heads = self.heads.iter().filter_map(|head| self.scopes.chart(*head));
+            self.units = heads.map(|head| self.names.give_unit(&head.name)).collect();
         }
     }
 
@@ -311,7 +329,9 @@ impl<'d> Lower<'d> {
             let more = self.names.renamed.len() - 1;
             let tail =
                 if more > 0 { format!("; {more} more names are changed as well") } else { String::new() };
-            let what = format!("`{from}` is called `{to}` there{tail}");
+            let word = crate::words::everywhere().any(|w| w.eq_ignore_ascii_case(from));
+            let why = if word { ", because it is a word of IEC 61131-3" } else { "" };
+            let what = format!("`{from}` is called `{to}` there{why}{tail}");
             let mut problem = Problem::new(&codes::RENAMED, *at, what);
             for (at, _, to) in self.names.renamed.iter().skip(1).take(100) {
                 problem.related.push((*at, format!("called `{to}`")));

@@ -96,6 +96,17 @@ impl Element {
         self.children.iter_mut().for_each(Element::paragraphs);
     }
 
+    /// Moves all objects of a drawing to one place and leaves out their sizes, which says that they have none.
+    pub fn unplaced(mut self) -> Element {
+        if self.tag == "position" {
+            self.set("x", "0");
+            self.set("y", "0");
+        }
+        self.attributes.retain(|(name, _)| !matches!(*name, "width" | "height"));
+        self.children = self.children.into_iter().map(Element::unplaced).collect();
+        self
+    }
+
     /// Prints the element with two blanks of indentation for each level.
     pub fn print(&self, level: usize, text: &mut String) {
         let blanks = " ".repeat(2 * level);

@@ -5,6 +5,7 @@
 //! written here from TC6 XML 2.01 and IEC 61131-3, not from a run.
 
 mod charts;
+mod codesys;
 mod corpus;
 mod hostile;
 mod problems;

@@ -10,6 +10,7 @@
 mod carried;
 mod corpus;
 mod hostile;
+mod instances;
 mod problems;
 #[path = "../../../exchange/tests/support/mod.rs"]
 mod support;

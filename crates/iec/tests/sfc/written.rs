@@ -269,6 +269,49 @@ fn a_step_that_is_not_read_may_have_the_name_of_a_variable() {
     assert!(written.problems.iter().any(|p| p.what.contains("`Init` is called `G_Init` there")));
 }
 
+/// Steps called like standard functions, as in the Oscat library; a variable may not be.
+const FUNCTIONS: &str = "
+profile iec61131
+input a : BOOL
+output q : BOOL
+chart G {
+  initial step Check
+  step Add { N q }
+  step Max
+  Check -> Add when a
+  Add -> Max when not a
+  Max -> Check when a
+}
+";
+
+#[test]
+fn a_step_that_is_not_read_may_have_the_name_of_a_standard_function() {
+    let before = document(FUNCTIONS);
+    let written = export(&before);
+    assert_eq!(written.problems, []);
+    let (after, problems) = import(&written.text);
+    assert_eq!(problems, []);
+    assert_eq!(g7_syntax::print(&after, None), g7_syntax::print(&before, None), "{}", written.text);
+    for (from, to, expected) in [
+        // `Add.X` would be a member of the function.
+        (
+            "Max -> Check when a",
+            "Max -> Check when Add.X",
+            "`Add` is called `G_Add` there, because it is a word",
+        ),
+        (
+            "input a : BOOL",
+            "input a : BOOL  input sel : BOOL",
+            "`sel` is called `sel_2` there, because it is a word",
+        ),
+        ("Check", "On", "`On` is called `G_On` there, because it is a word"),
+    ] {
+        let written = export(&document(&FUNCTIONS.replace(from, to)));
+        let told: Vec<_> = written.problems.iter().map(|p| &*p.what).collect();
+        assert!(told.iter().any(|t| t.contains(expected)), "{expected}: {told:?}");
+    }
+}
+
 /// The judgement of matiec on a text.
 fn compile(matiec: &g7_peers::Matiec, text: &str) -> Result<(), String> {
     static CALLS: AtomicUsize = AtomicUsize::new(0);
@@ -289,6 +332,7 @@ fn matiec_takes_what_is_written() {
         BESIDE.to_string(),
         EARLY.to_string(),
         TWINS.to_string(),
+        FUNCTIONS.to_string(),
         g7_syntax::print(&import(&file("press.st")).0, None),
         g7_syntax::print(&import(&file("fork.st")).0, None),
     ] {

@@ -25,39 +25,61 @@ pub(super) fn initial(value: &Expr, ty: Type) -> Element {
 /// The element of a list in a program, the name of a global list, and the test for its variables.
 type Sort = (&'static str, &'static str, fn(&VarDecl) -> bool);
 
-/// A list of variables of one sort: `inputVars`, …
+/// The sorts of lists. Variables with an address are local: the standard has no addresses in the lists of inputs
+/// and outputs of a program.
+const SORTS: [Sort; 6] = [
+    ("inputVars", "Inputs", |v| v.kind == VarKind::Input && v.address.is_none()),
+    ("outputVars", "Outputs", |v| v.kind == VarKind::Output && v.address.is_none()),
+    ("localVars", "Located", |v| matches!(v.kind, VarKind::Input | VarKind::Output) && v.address.is_some()),
+    ("localVars", "Variables", |v| v.kind == VarKind::Var && !v.retain),
+    ("localVars", "Retained", |v| v.kind == VarKind::Var && v.retain),
+    ("localVars", "Constants", |v| v.kind == VarKind::Const),
+];
+
+/// The element of a list.
+fn list(tag: &str, title: &str, global: bool) -> Element {
+    let list = if global { Element::new("globalVars").with("name", title) } else { Element::new(tag) };
+    match title {
+        "Retained" => list.with("retain", true),
+        "Constants" => list.with("constant", true),
+        _ => list,
+    }
+}
+
+/// A list of variables of each sort: `inputVars`, …
 pub(super) fn lists(variables: &[&VarDecl], global: bool) -> Vec<Element> {
-    // Variables with an address are local: the standard has no addresses in the lists of inputs and
-    // outputs of a program.
-    let sorts: [Sort; 6] = [
-        ("inputVars", "Inputs", |v| v.kind == VarKind::Input && v.address.is_none()),
-        ("outputVars", "Outputs", |v| v.kind == VarKind::Output && v.address.is_none()),
-        ("localVars", "Located", |v| {
-            matches!(v.kind, VarKind::Input | VarKind::Output) && v.address.is_some()
-        }),
-        ("localVars", "Variables", |v| v.kind == VarKind::Var && !v.retain),
-        ("localVars", "Retained", |v| v.kind == VarKind::Var && v.retain),
-        ("localVars", "Constants", |v| v.kind == VarKind::Const),
-    ];
     let mut all = Vec::new();
-    for (tag, title, fits) in sorts {
-        let mut list =
-            if global { Element::new("globalVars").with("name", title) } else { Element::new(tag) };
-        match title {
-            "Retained" => list = list.with("retain", true),
-            "Constants" => list = list.with("constant", true),
-            _ => {}
-        }
+    for (tag, title, fits) in SORTS {
+        let mut made = list(tag, title, global);
         let mut some = false;
         for decl in variables.iter().filter(|v| fits(v)) {
             some = true;
-            decl.names.iter().for_each(|n| list.push(variable(decl, n)));
+            decl.names.iter().for_each(|n| made.push(variable(decl, n)));
         }
         if some {
-            all.push(list);
+            all.push(made);
         }
     }
     all
+}
+
+/// Lists of the variables of a program in the order of the document; those that are `given` are inputs.
+pub(super) fn in_order<'v>(
+    variables: impl Iterator<Item = &'v VarDecl>,
+    given: impl Fn(&VarDecl) -> bool,
+) -> Vec<Element> {
+    let mut all: Vec<(&str, Element)> = Vec::new();
+    for decl in variables {
+        let found = SORTS.iter().find(|(_, _, fits)| fits(decl)).map(|(tag, title, _)| (*tag, *title));
+        let (tag, title) = found.filter(|_| !given(decl)).unwrap_or(("inputVars", "Inputs"));
+        if all.last().is_none_or(|(last, _)| *last != title) {
+            all.push((title, list(tag, title, false)));
+        }
+        if let Some((_, made)) = all.last_mut() {
+            decl.names.iter().for_each(|n| made.push(variable(decl, n)));
+        }
+    }
+    all.into_iter().map(|(_, made)| made).collect()
 }
 
 fn variable(decl: &VarDecl, name: &Name) -> Element {

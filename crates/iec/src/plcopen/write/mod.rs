@@ -6,6 +6,7 @@
 //! task says when they run.
 
 mod clocks;
+mod codesys;
 mod control;
 mod declare;
 mod never;

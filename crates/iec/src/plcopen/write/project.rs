@@ -1,12 +1,15 @@
 //! The whole project: programs, functions, tasks.
 
+use std::collections::HashSet;
+
 use g7_model::{
     Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, NamedAction, Nanos, Problem, Section,
-    StepKind, VarDecl,
+    StepKind, Switch, VarDecl,
 };
 
+use super::codesys::{by_flags, from_outside, is_given, steps_alone};
 use super::control::control;
-use super::declare::{external, initial, lists, type_of};
+use super::declare::{external, in_order, initial, lists, type_of};
 use super::sfc::Sfc;
 use crate::Written;
 use crate::nodes::Taken;
@@ -22,12 +25,13 @@ const MADE: &str = "2026-01-01T00:00:00";
 
 /// Writes a document.
 pub(crate) fn export(document: &Document, dialect: Dialect) -> Written {
-    let form = if dialect.is_of_matiec() && has_parts(document) { Form::Networks } else { Form::Charts };
-    let (mut document, mut problems) = standard(document, form);
+    let (mut document, mut problems, bare) = in_form(document, dialect);
     if dialect.is_of_matiec() {
         document = control(document, &mut problems);
     }
-    let mut project = Project { document: &document, problems: &mut problems, dialect }.element();
+    let outside = if dialect == Dialect::Codesys { from_outside(&document) } else { HashSet::new() };
+    let whole = Project { document: &document, problems: &mut problems, dialect, bare, outside };
+    let mut project = whole.element();
     if dialect.is_of_matiec() {
         project = project.in_paragraphs();
     }
@@ -35,6 +39,40 @@ pub(crate) fn export(document: &Document, dialect: Dialect) -> Written {
     project.print(0, &mut text);
     problems.sort_by_key(|p| (p.at.start, p.at.end));
     Written { text, problems }
+}
+
+/// The document in the form that a dialect has; true if bodies stand beside their steps without qualifiers.
+fn in_form(document: &Document, dialect: Dialect) -> (Document, Vec<Problem>, bool) {
+    if dialect != Dialect::Codesys {
+        let form = if dialect.is_of_matiec() && has_parts(document) {
+            Form::Networks { drawn: true }
+        } else {
+            Form::Charts
+        };
+        let (document, problems) = standard(document, form);
+        return (document, problems, false);
+    }
+    let mut document = document.clone();
+    let mut of_flags = Vec::new();
+    by_flags(&mut document, &mut of_flags);
+    let no_final_scan = |p: &g7_model::Profile| {
+        let of = p.switches.iter().rev().find_map(|(s, _)| match s {
+            Switch::FinalScan(on) => Some(!on),
+            _ => None,
+        });
+        of == Some(true)
+    };
+    if document.profile().is_some_and(no_final_scan) && steps_alone(&document) {
+        let (made, mut problems) = standard(&document, Form::Codesys { bare: true });
+        // Steps that drive something more have a block of actions, and then the rule is the standard's.
+        if steps_alone(&made) {
+            problems.append(&mut of_flags);
+            return (made, problems, true);
+        }
+    }
+    let (document, mut problems) = standard(&document, Form::Codesys { bare: false });
+    problems.append(&mut of_flags);
+    (document, problems, false)
 }
 
 /// True if a document has macro-steps, transition sections, or several charts, which evolve together only
@@ -56,6 +94,10 @@ struct Project<'w> {
     document: &'w Document,
     problems: &'w mut Vec<Problem>,
     dialect: Dialect,
+    /// True if the bodies of steps stand beside them without qualifiers, as CODESYS has them.
+    bare: bool,
+    /// The variables of each program that others write.
+    outside: HashSet<(String, String)>,
 }
 
 impl<'w> Project<'w> {
@@ -67,7 +109,7 @@ impl<'w> Project<'w> {
         self.document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some(v) } else { None })
     }
 
-    fn element(&mut self) -> Element {
+    fn element(mut self) -> Element {
         let document = self.document;
         let bodies = document.items.iter().any(|i| matches!(i, Item::Pre(..) | Item::Post(..)));
         let single = self.charts().count() == 1 && !bodies;
@@ -143,10 +185,13 @@ impl<'w> Project<'w> {
         intervals.dedup();
         let mut resource = Element::new("resource").with("name", taken.give("Res0"));
         for (priority, interval) in intervals.iter().enumerate() {
-            let mut task = Element::new("task")
-                .with("name", taken.give(&format!("Task{}", priority + 1)))
-                .with("interval", format!("{interval:#}"))
-                .with("priority", priority);
+            let mut task = Element::new("task").with("name", taken.give(&format!("Task{}", priority + 1)));
+            // CODESYS runs a task without an interval as well; beside charts with a period it needs one.
+            let paced = programs.iter().any(|p| p.every.is_some()) || self.document.cycle().is_some();
+            if self.dialect != Dialect::Codesys || paced {
+                task = task.with("interval", format!("{interval:#}"));
+            }
+            task = task.with("priority", priority);
             for program in programs.iter().filter(|p| p.every.unwrap_or(scan) == *interval) {
                 // An instance is not called like its program, which compilers would take for the type.
                 let instance = Element::new("pouInstance")
@@ -196,7 +241,11 @@ impl<'w> Project<'w> {
         let types = Known::new(document, Some(chart));
         let writer = || Writer { types: &types };
         let mut interface = Element::new("interface");
-        let of_chart = lists(&chart.vars().collect::<Vec<_>>(), false);
+        let of_chart = if self.dialect == Dialect::Codesys && !single {
+            in_order(chart.vars(), |v| is_given(v, &chart.name.text, &self.outside))
+        } else {
+            lists(&chart.vars().collect::<Vec<_>>(), false)
+        };
         if single {
             let of_file = lists(&self.variables().collect::<Vec<_>>(), false);
             interface = interface.children(of_file).children(of_chart);
@@ -226,6 +275,7 @@ impl<'w> Project<'w> {
             writer: writer(),
             problems: self.problems,
             dialect: self.dialect,
+            bare: self.bare,
             next: 0,
         };
         let body = sfc.body(chart, 0);

@@ -4,10 +4,11 @@ use std::collections::HashMap;
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Literal, Problem, Step, StepKind, Target,
-    Transition, Work,
+    Action, ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Item, Literal, Problem, Step, StepKind,
+    Target, Transition, Work,
 };
 
+use super::codesys::attribute;
 use super::place::Places;
 use crate::plcopen::Dialect;
 use crate::st::Writer;
@@ -25,6 +26,8 @@ pub(super) struct Sfc<'a> {
     pub(super) writer: Writer<'a>,
     pub(super) problems: &'a mut Vec<Problem>,
     pub(super) dialect: Dialect,
+    /// True if the bodies of steps stand beside them without qualifiers, as CODESYS has them.
+    pub(super) bare: bool,
     pub(super) next: u64,
 }
 
@@ -77,7 +80,10 @@ impl Sfc<'_> {
         for (id, step) in &steps {
             self.step(&mut drawing, *id, step, &rows, depth);
         }
-        Element::new("SFC").children(drawing.objects)
+        let body = Element::new("SFC").children(drawing.objects);
+        // CODESYS places all symbols itself, and its own files have no places.
+        let placed = self.document.items.iter().any(|i| matches!(i, Item::Layout(_)));
+        if self.dialect == Dialect::Codesys && !placed { body.unplaced() } else { body }
     }
 
     /// Puts a bar behind each step with several transitions.
@@ -248,12 +254,16 @@ impl Sfc<'_> {
             element = element
                 .children((!entry).then(|| input(&into)))
                 .child(Element::new("connectionPointOut").with("formalParameter", ""));
-            if step.actions.iter().any(is_action) {
+            if self.bare {
+                element = element.children(bodies(step));
+            } else if step.actions.iter().any(is_action) {
                 element.push(Element::new("connectionPointOutAction").with("formalParameter", ""));
             }
             drawing.objects.push(documented(element, step));
         }
-        self.block(drawing, id, step, place);
+        if !self.bare {
+            self.block(drawing, id, step, place);
+        }
     }
 
     /// The action block of a step.
@@ -303,6 +313,28 @@ impl Sfc<'_> {
     fn inline(&self, work: &Work) -> Element {
         Element::new("inline").child(Element::formatted("ST", &self.writer.body(work.statements())))
     }
+}
+
+/// The attributes by which CODESYS stores the bodies of a step.
+fn bodies(step: &Step) -> Option<Element> {
+    let attributes: Vec<Element> = step
+        .actions
+        .iter()
+        .filter_map(|a| match &a.kind {
+            ActionKind::Qualified { qualifier, target: Target::Path(path), .. } => {
+                Some(Element::with_text("attribute", &path.text()).with("guid", attribute(*qualifier)?))
+            }
+            _ => None,
+        })
+        .collect();
+    if attributes.is_empty() {
+        return None;
+    }
+    let data = Element::new("data")
+        .with("name", "http://www.3s-software.com/plcopenxml/sfc/element")
+        .with("handleUnknown", "implementation");
+    let all = Element::new("attributes").with("xmlns", "").children(attributes);
+    Some(Element::new("addData").child(data.child(all)))
 }
 
 fn is_action(action: &Action) -> bool {

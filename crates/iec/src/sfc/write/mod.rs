@@ -24,7 +24,7 @@ struct Program<'d> {
 
 /// Writes a document.
 pub fn export(document: &Document) -> Written {
-    let (document, mut problems) = standard(document, Form::Networks);
+    let (document, mut problems) = standard(document, Form::Networks { drawn: false });
     let mut exporter = Exporter::new(&document);
     let text = exporter.text();
     problems.append(&mut exporter.problems);

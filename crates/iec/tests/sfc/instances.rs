@@ -1,0 +1,85 @@
+//! Instances of function blocks with a chart, as OpenPLC and Beremiz write them.
+
+use g7_iec::sfc::import;
+use g7_model::{Document, FileId, Problem};
+
+const BLOCK: &str = "
+FUNCTION_BLOCK Feeder
+  VAR_INPUT start : BOOL; END_VAR
+  VAR_OUTPUT turning : BOOL; END_VAR
+  INITIAL_STEP Rest: END_STEP
+  STEP Run: turning(N); END_STEP
+  TRANSITION FROM Rest TO Run := start; END_TRANSITION
+  TRANSITION FROM Run TO Rest := NOT start; END_TRANSITION
+END_FUNCTION_BLOCK
+";
+
+fn program(body: &str) -> (Document, Vec<Problem>) {
+    let text = format!(
+        "{BLOCK}PROGRAM Main
+           VAR go AT %IX0.0 : BOOL; lamp AT %QX0.0 : BOOL; both : BOOL; fb0, fb1 : Feeder; END_VAR
+           {body}
+         END_PROGRAM"
+    );
+    import(text.as_bytes(), FileId(0))
+}
+
+fn told(problems: &[Problem]) -> Vec<(&str, &str)> {
+    problems.iter().map(|p| (p.code.id, &*p.what)).collect()
+}
+
+#[test]
+fn each_instance_is_a_chart_of_its_own() {
+    let (found, problems) =
+        program("fb0(start := go, turning => lamp); FB1(NOT go); both := lamp AND Fb1.Turning;");
+    assert_eq!(told(&problems), []);
+    let chart = |name: &str| {
+        format!(
+            "chart {name} {{
+               var start : BOOL
+               var turning : BOOL
+               initial step Rest
+               step Run {{ N turning }}
+               Rest -> Run when start
+               Run -> Rest when not start
+             }}"
+        )
+    };
+    let wanted = format!(
+        "profile iec61131
+         input go : BOOL at %IX0.0
+         output lamp : BOOL at %QX0.0
+         var both : BOOL
+         pre {{ fb0.start := go  fb1.start := not go }}
+         post {{ lamp := fb0.turning  both := lamp and fb1.turning }}
+         {}
+         {}",
+        chart("fb0"),
+        chart("fb1")
+    );
+    let (wanted, wrong) = g7_syntax::parse(&wanted, FileId(0));
+    assert_eq!(wrong, []);
+    assert_eq!(g7_syntax::print(&found, None), g7_syntax::print(&wanted, None));
+    let (compiled, problems) = g7_compile::compile(&found);
+    assert!(compiled.is_some(), "{problems:?}");
+}
+
+#[test]
+fn calls_that_run_otherwise_are_told() {
+    let cases: [(&str, &str, &str); 6] = [
+        ("IF go THEN fb0(start := go); END_IF; fb1();", "G0604", "called on a condition"),
+        ("fb0(start := go); fb0(start := go); fb1();", "G0604", "called twice"),
+        ("fb0(start := go);", "G0605", "`fb1` is never called"),
+        ("fb0(go); fb1(start := fb0.turning);", "G0614", "of the scan before"),
+        ("fb0(start := go, turning => lamp); fb1(start := lamp);", "G0614", "of the scan before"),
+        ("IF go THEN RETURN; END_IF; fb0(); fb1();", "G0604", "RETURN in a program that calls a chart"),
+    ];
+    for (body, code, what) in cases {
+        let (found, problems) = program(body);
+        let told = told(&problems);
+        assert!(told.iter().any(|t| t.0 == code && t.1.contains(what)), "{body}: {told:?}");
+        assert!(found.charts().count() >= 1, "{body}");
+    }
+    let (_, problems) = program("fb0(stop := go); fb1();");
+    assert_eq!(told(&problems), [("G0607", "the function block of `fb0` has no input `stop`")]);
+}
