@@ -371,7 +371,7 @@ fn a_chart_leaves_in_every_form_that_is_listed() {
 fn the_code_of_a_step_is_marked() {
     let mut page = Asked::default();
     page.open(&CHART.replace("when aa", "when a"));
-    for (word, ending) in [("c", ".c"), ("rust", ".rs"), ("arduino", ".c")] {
+    for (word, ending) in [("c", "a.c"), ("rust", ".rs"), ("arduino", "a.c")] {
         let out = page.ok(json!({ "do": "export", "file": "a.g7", "to": word }));
         let files = out["files"].as_array().expect("files");
         let file =
