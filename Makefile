@@ -99,7 +99,7 @@ $(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, a bare target, the model checkers ABC, Spin and rIC3
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, a bare target, the model checkers ABC, Spin and rIC3
 peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
@@ -117,7 +117,7 @@ peers: checkers
 	@cargo run --quiet --package g7 -- gen rust examples/bottle-conveyor --project cargo --force -o $(CORTEX) && \
 		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
-	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*' 'fmpy==0.3.*'
+	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*' 'fmpy==0.3.*' 'pyecore==0.15.*'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
 
 # rIC3 is GPL: it is asked, never linked. Its libraries use parts of the language that are not stable yet.
@@ -215,7 +215,8 @@ prove-table:
 	cargo run --profile soak --quiet --package g7-tests --example prove_table -- $(or $(LIMIT),5) examples tests/spec/litmus \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
 
-## charts written as PLCopen XML, opened by Beremiz and OpenPLC, compiled by matiec and run beside the engine, as a table (G7_BEREMIZ=…, G7_XML2ST=… name their folders, iec2c stands in the PATH, Python has lxml)
+## charts written for Beremiz, OpenPLC, matiec and pyecore, taken by these and run beside the engine, as a table with each refusal (G7_BEREMIZ=…, G7_XML2ST=… name their folders, iec2c stands in the PATH, Python has lxml and pyecore)
+interop: export G7_PEERS = $(PYTHON)
 interop:
 	cargo run --quiet --package g7-tests --example interop -- examples tests/spec tests/interchange \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))

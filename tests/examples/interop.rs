@@ -1,13 +1,18 @@
-//! `interop FILE…`: writes charts as PLCopen XML, has Beremiz and OpenPLC open them and matiec compile
-//! what they make, does the same with Ladder (`gen ld`), and prints a table of what was accepted.
+//! `interop FILE…`: writes charts for other tools, has these take them, and prints a table of what was accepted:
+//!
+//! - PLCopen XML, opened by Beremiz and OpenPLC; matiec compiles what they make;
+//! - the same with Ladder (`gen ld`), unless `G7_NO_LADDER` is set;
+//! - text as SFC, Structured Text and Instruction List, compiled by matiec;
+//! - XMI, loaded by pyecore with the meta-model of the corpus.
 //!
 //! Files may be charts, files of other tools and conformance cases, or folders of them. Whatever G7
-//! refuses with a reason is not tried; the reasons are counted below the table, as are those of the
-//! peers, each with its first file.
+//! refuses with a reason is not tried; a table has each reason with its count, its first file and who is right, and the
+//! complaints of the peers stand below it.
 #![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "a tool: it starts other programs")]
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 
 use g7_codegen::plc;
 use g7_exchange::{Dialect, Format};
@@ -39,8 +44,7 @@ fn main() {
         let dialect = if reader.name == "OpenPLC" { Dialect::OpenPlc } else { Dialect::Beremiz };
         table.rows(&reader, reader.name, true, |document| {
             let written = plcopen.write_in(document, dialect)?;
-            let lost = written.problems.iter().find(|p| p.severity() == Severity::Error);
-            Some(lost.map_or(Ok(written.text), |p| Err(format!("refused by G7: {}", p.what))))
+            Some(taken(written.text, &written.problems).map_err(|why| format!("{}, {why}", reader.name)))
         });
         if reader.name == "Beremiz" && std::env::var_os("G7_NO_LADDER").is_none() {
             table.rows(&reader, "Beremiz on Ladder", false, |document| {
@@ -51,10 +55,55 @@ fn main() {
             });
         }
     }
-    println!("\n{} charts", charts.len());
-    for (reason, (count, first)) in table.why {
-        println!("{count:4} {reason} ({})", first.display());
+    table.texts("SFC text", |document| {
+        let written = g7_exchange::named("sfc")?.write(document)?;
+        Some(taken(written.text, &written.problems))
+    });
+    for (name, form) in [("flat ST", plc::Form::St), ("IL", plc::Form::Il)] {
+        table.texts(name, |document| {
+            let ready = g7_compile::compile(document).0?;
+            let printed = plc::print(&ready, form, "chart", "");
+            Some(match printed {
+                Ok(printed) => Ok(printed.text),
+                Err(lost) => taken(String::new(), &lost),
+            })
+        });
     }
+    table.models();
+    println!("\n{} charts", charts.len());
+    println!("\n| reason | charts | first | who is right |\n|---|---|---|---|");
+    for (reason, (count, first)) in &table.why {
+        println!("| {reason} | {count} | {} | {} |", first.display(), who(reason));
+    }
+}
+
+/// A text, if nothing is lost in it; otherwise the first loss.
+fn taken(text: String, problems: &[Problem]) -> Result<String, String> {
+    let lost = problems.iter().find(|p| p.severity() == Severity::Error);
+    lost.map_or(Ok(text), |p| Err(format!("refused by G7: {}", p.what)))
+}
+
+/// Words of the refusals where the target language has no such construct: G7 is right to refuse there.
+const ABSENT: [&str; 4] =
+    ["which IEC 61131-3 does not have", "the meta-model has none", "the meta-model's are", "stability"];
+
+/// Who is right where something was not taken.
+fn who(reason: &str) -> &'static str {
+    let is_own = reason.contains("refused by G7") || reason.contains("no Ladder");
+    if !is_own {
+        return "a form of G7 that the tool does not take, or a fault of the tool";
+    }
+    if ABSENT.iter().any(|word| reason.contains(word)) {
+        return "G7: the language has no such construct";
+    }
+    "a limit of G7: a form could be found"
+}
+
+/// A reason without the names of one chart, so that equal reasons are counted together.
+fn nameless(reason: &str) -> String {
+    let parts = reason.split('`').enumerate();
+    let parts: String = parts.map(|(i, part)| if i % 2 == 1 { "`…`" } else { part }).collect();
+    parts.replace('|', "/").chars().take(100).collect()
 }
 
 /// The charts that are tried, and the reasons why some are not taken.
@@ -68,8 +117,7 @@ struct Table<'c> {
 
 impl Table<'_> {
     fn note(&mut self, reason: &str, file: &Path) {
-        let reason: String = reason.chars().take(100).collect();
-        self.why.entry(reason).or_insert_with(|| (0, file.to_path_buf())).0 += 1;
+        self.why.entry(nameless(reason)).or_insert_with(|| (0, file.to_path_buf())).0 += 1;
     }
 
     /// Prints the projects that the reader opens, of these the ones that matiec compiles, and, if they are run, of
@@ -114,6 +162,52 @@ impl Table<'_> {
             if run {
                 println!("| its program runs as the engine | {alike} / {compiled} |");
             }
+        }
+    }
+
+    /// Prints how many texts matiec compiles.
+    fn texts(&mut self, name: &str, written: impl Fn(&Document) -> Option<Result<String, String>>) {
+        let (mut tried, mut compiled) = (0, 0);
+        for (file, document) in self.charts {
+            match written(document) {
+                Some(Ok(text)) if self.matiec.is_some() => {
+                    tried += 1;
+                    compiled += u32::from(self.compiles(&text, file));
+                }
+                Some(Err(reason)) => self.note(&format!("{name}, {reason}"), file),
+                _ => {}
+            }
+        }
+        if self.matiec.is_some() {
+            println!("| matiec on {name} | {compiled} / {tried} |");
+        }
+    }
+
+    /// Prints how many models pyecore loads.
+    fn models(&mut self) {
+        let meta = g7_peers::corpus("agrafe-metamodel/Project-AGRAFE/model");
+        let Some((meta, python)) = meta.zip(g7_peers::python("pyecore")) else { return };
+        let xmi = g7_exchange::named("xmi").expect("a format of the table");
+        let mut command = Command::new(python);
+        command.arg(g7_peers::script("xmi_read.py")).arg(meta);
+        let mut tried = Vec::new();
+        for (file, document) in self.charts {
+            let Some(written) = xmi.write(document) else { continue };
+            match taken(written.text, &written.problems) {
+                Ok(text) => {
+                    command.arg(self.file(&format!("{}.grafcet", tried.len()), &text));
+                    tried.push(file);
+                }
+                Err(reason) => self.note(&format!("XMI, {reason}"), file),
+            }
+        }
+        let out = command.output().unwrap_or_else(|e| panic!("{e}"));
+        let said = String::from_utf8_lossy(&out.stdout);
+        let loaded = said.lines().filter(|line| line.parse::<usize>().is_ok()).count();
+        println!("| pyecore on XMI | {loaded} / {} |", tried.len());
+        for (file, line) in tried.iter().zip(said.lines()).filter(|(_, line)| line.parse::<usize>().is_err())
+        {
+            self.note(&format!("pyecore: {line}"), file);
         }
     }
 

@@ -243,8 +243,8 @@ struct Plc {
 }
 
 impl Plc {
-    fn print(&self, form: plc::Form, ending: &'static str) -> Result<Verdict, Failure> {
-        controller(Tongue::Plc { form, ending, ascii: self.ascii }, &self.what)
+    fn print(&self, form: plc::Form) -> Result<Verdict, Failure> {
+        controller(Tongue::Plc { form, ascii: self.ascii }, &self.what)
     }
 }
 
@@ -273,16 +273,16 @@ pub(crate) fn generate(args: &Gen) -> Result<Verdict, Failure> {
         Words::C(code) => code.print(Language::C),
         Words::Arduino(code) => code.print(Language::Arduino),
         Words::Rust(code) => code.print(Language::Rust),
-        Words::St(what) => what.print(plc::Form::St, "st"),
-        Words::Il { style: IlStyle::Flat, what } => what.print(plc::Form::Il, "il"),
-        Words::Il { style: IlStyle::Dolog80, what } => what.print(plc::Form::Dolog80, "il"),
-        Words::Ld { style: LdStyle::Xml, what } => what.print(plc::Form::Ld, "xml"),
-        Words::Ld { style: LdStyle::Drawn, what } => what.print(plc::Form::Drawing, "svg"),
-        Words::Awl(what) => what.print(plc::Form::Awl, "awl"),
-        Words::Scl(what) => what.print(plc::Form::Scl, "scl"),
-        Words::Twincat(what) => what.print(plc::Form::TwinCat, "TcPOU"),
-        Words::Logix(what) => what.print(plc::Form::Logix, "L5X"),
-        Words::Unity(what) => what.print(plc::Form::Unity, "XST"),
+        Words::St(what) => what.print(plc::Form::St),
+        Words::Il { style: IlStyle::Flat, what } => what.print(plc::Form::Il),
+        Words::Il { style: IlStyle::Dolog80, what } => what.print(plc::Form::Dolog80),
+        Words::Ld { style: LdStyle::Xml, what } => what.print(plc::Form::Ld),
+        Words::Ld { style: LdStyle::Drawn, what } => what.print(plc::Form::Drawing),
+        Words::Awl(what) => what.print(plc::Form::Awl),
+        Words::Scl(what) => what.print(plc::Form::Scl),
+        Words::Twincat(what) => what.print(plc::Form::TwinCat),
+        Words::Logix(what) => what.print(plc::Form::Logix),
+        Words::Unity(what) => what.print(plc::Form::Unity),
         Words::Fmu(what) => packed(what),
     }
 }
@@ -317,11 +317,11 @@ struct Form {
     board: Option<Board>,
 }
 
-/// The language of the output. PLC code has a form and a file extension too; `ascii` keeps its comments in ASCII.
+/// The language of the output. PLC code has a form too; `ascii` keeps its comments in ASCII.
 #[derive(Clone, Copy)]
 enum Tongue {
     Code(Form),
-    Plc { form: plc::Form, ending: &'static str, ascii: bool },
+    Plc { form: plc::Form, ascii: bool },
 }
 
 impl Tongue {
@@ -347,10 +347,10 @@ impl Tongue {
                 };
                 Ok(Written { files, problems: p.problems, sizes })
             }
-            Tongue::Plc { form, ending, ascii } => {
+            Tongue::Plc { form, ascii } => {
                 let printed = plc::print(compiled, form, name, source)?;
                 let beside = printed.beside.into_iter();
-                let all = beside.chain([(ending, printed.text)]).map(|(ending, text)| File {
+                let all = beside.chain([(form.ending(), printed.text)]).map(|(ending, text)| File {
                     name: format!("{name}.{ending}"),
                     text: if ascii { plc::ascii(&text) } else { text },
                 });

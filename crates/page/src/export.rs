@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_codegen::{Language, plc};
+use g7_codegen::{Language, Parts, plc};
 use g7_compile::symbols::Symbols;
 use g7_draw::Options;
 use g7_engine::StepId;
@@ -55,29 +55,49 @@ struct Mark {
 #[derive(Clone, Copy)]
 enum Code {
     Native(Language),
-    /// A form of the equations, and the extension of its file.
-    Plc(plc::Form, &'static str),
+    /// A form of the equations.
+    Plc(plc::Form),
 }
 
-/// The languages for controllers: word, title, kind of code.
-const LANGUAGES: [(&str, &str, Code); 8] = [
-    ("c", "C99", Code::Native(Language::C)),
-    ("arduino", "Arduino sketch", Code::Native(Language::Arduino)),
-    ("rust", "Rust module", Code::Native(Language::Rust)),
-    ("st", "Structured Text", Code::Plc(plc::Form::St, "st")),
-    ("il", "Instruction List", Code::Plc(plc::Form::Il, "il")),
-    ("dolog80", "Instruction List, set and reset", Code::Plc(plc::Form::Dolog80, "il")),
-    ("ld", "Ladder (PLCopen XML)", Code::Plc(plc::Form::Ld, "xml")),
-    ("ladder", "Ladder, drawn", Code::Plc(plc::Form::Drawing, "svg")),
-];
+impl Code {
+    /// All kinds, in the order in which they are shown.
+    fn all() -> impl Iterator<Item = Code> {
+        let native = [Language::C, Language::Arduino, Language::Rust].map(Code::Native);
+        native.into_iter().chain(plc::Form::ALL.map(Code::Plc))
+    }
+
+    fn word(self) -> &'static str {
+        match self {
+            Code::Native(Language::C) => "c",
+            Code::Native(Language::Arduino) => "arduino",
+            Code::Native(Language::Rust) => "rust",
+            Code::Plc(form) => form.word(),
+        }
+    }
+
+    fn title(self) -> &'static str {
+        match self {
+            Code::Native(Language::C) => "C99",
+            Code::Native(Language::Arduino) => "Arduino sketch",
+            Code::Native(Language::Rust) => "Rust module",
+            Code::Plc(form) => form.title(),
+        }
+    }
+}
 
 /// All forms, in the order in which they are shown.
 pub(crate) fn forms() -> Vec<Form> {
     let chart =
         |f: &g7_exchange::Format| Form { word: f.word, title: f.title, kind: "chart", read: f.is_read() };
-    let code = |(word, title, _)| Form { word, title, kind: "code", read: false };
+    let code = |code: Code| Form { word: code.word(), title: code.title(), kind: "code", read: false };
     let picture = Form { word: "svg", title: "SVG", kind: "picture", read: false };
-    FORMATS.iter().filter(|f| f.is_written()).map(chart).chain(LANGUAGES.map(code)).chain([picture]).collect()
+    FORMATS
+        .iter()
+        .filter(|f| f.is_written())
+        .map(chart)
+        .chain(Code::all().map(code))
+        .chain([picture])
+        .collect()
 }
 
 /// Exports a file in another form.
@@ -89,8 +109,8 @@ pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
     if to == "svg" {
         return Ok(out(file, vec![(format!("{stem}.svg"), picture(file))], &[]));
     }
-    if let Some((_, _, language)) = LANGUAGES.iter().find(|(word, ..)| *word == to) {
-        return code(file, stem, *language);
+    if let Some(found) = Code::all().find(|code| code.word() == to) {
+        return code(file, stem, found);
     }
     let unknown = || format!("there is no form `{to}`");
     let format = g7_exchange::named(to).ok_or_else(unknown)?;
@@ -132,14 +152,16 @@ fn code(file: &File, name: &str, code: Code) -> Result<Out, String> {
                 name,
                 source: file.text(),
             };
-            g7_codegen::print(&compiled, &options).map(|p| {
+            // The files of the command line: what all charts have in common stands apart.
+            g7_codegen::print_as(&compiled, &options, Parts::Apart).map(|p| {
                 let steps = words(file, symbols, |step| p.places.step(step).to_owned());
                 (p.files.into_iter().map(|f| (f.name, f.text)).collect(), p.problems, steps)
             })
         }
-        Code::Plc(form, ending) => plc::print(&compiled, form, name, file.text()).map(|p| {
+        Code::Plc(form) => plc::print(&compiled, form, name, file.text()).map(|p| {
             let steps = words(file, symbols, |step| p.step(step).to_owned());
-            (vec![(format!("{name}.{ending}"), p.text)], p.problems, steps)
+            let all = p.beside.into_iter().chain([(form.ending(), p.text)]);
+            (all.map(|(ending, text)| (format!("{name}.{ending}"), text)).collect(), p.problems, steps)
         }),
     };
     let (files, problems, steps) = match printed {

@@ -335,11 +335,26 @@ fn a_chart_leaves_in_every_form_that_is_listed() {
     let words: Vec<&str> =
         forms.as_array().expect("a list").iter().filter_map(|f| f["word"].as_str()).collect();
     assert!(words.contains(&"mermaid") && words.contains(&"svg"), "{words:?}");
+    // All that `g7 gen` prints as text.
+    for form in g7_codegen::plc::Form::ALL {
+        assert!(words.contains(&form.word()), "{}", form.word());
+    }
     for word in words {
         let out = page.ok(json!({ "do": "export", "file": "a.g7", "to": word }));
-        let file = &out["files"][0];
+        let file =
+            out["files"].as_array().and_then(|files| files.last()).expect("the main file, the last one");
         assert!(file["name"].as_str().is_some_and(|n| n.starts_with("a.")), "{word}: {out}");
         assert!(file["text"].as_str().is_some_and(|t| t.len() > 100), "{word}: {out}");
+    }
+    for (word, names) in [
+        ("c", ["g7.h", "g7.c", "a_run.h", "a.h", "a.c"].as_slice()),
+        ("awl", &["a.asc", "a.awl"]),
+        ("scl", &["a.tags.xml", "a.scl"]),
+    ] {
+        let out = page.ok(json!({ "do": "export", "file": "a.g7", "to": word }));
+        let files = out["files"].as_array().expect("files").iter();
+        let got: Vec<&str> = files.filter_map(|f| f["name"].as_str()).collect();
+        assert_eq!(got, names, "as the command line names them");
     }
     let why = page.no(json!({ "do": "export", "file": "a.g7", "to": "nothing" }));
     assert_eq!(why, "there is no form `nothing`");
@@ -356,7 +371,7 @@ fn a_chart_leaves_in_every_form_that_is_listed() {
 fn the_code_of_a_step_is_marked() {
     let mut page = Asked::default();
     page.open(&CHART.replace("when aa", "when a"));
-    for (word, ending) in [("c", ".c"), ("rust", ".rs"), ("arduino", ".c")] {
+    for (word, ending) in [("c", "a.c"), ("rust", ".rs"), ("arduino", "a.c")] {
         let out = page.ok(json!({ "do": "export", "file": "a.g7", "to": word }));
         let files = out["files"].as_array().expect("files");
         let file =

@@ -66,6 +66,51 @@ pub enum Form {
 }
 
 impl Form {
+    /// All forms, in the order in which they are offered: by the command line and by the page.
+    pub const ALL: [Form; 10] = [
+        Form::St,
+        Form::Il,
+        Form::Dolog80,
+        Form::Ld,
+        Form::Drawing,
+        Form::Awl,
+        Form::Scl,
+        Form::TwinCat,
+        Form::Logix,
+        Form::Unity,
+    ];
+
+    /// Its word, its title, and the ending of its file.
+    fn facts(self) -> [&'static str; 3] {
+        match self {
+            Form::St => ["st", "Structured Text", "st"],
+            Form::Il => ["il", "Instruction List", "il"],
+            Form::Dolog80 => ["dolog80", "Instruction List, set and reset", "il"],
+            Form::Ld => ["ld", "Ladder (PLCopen XML)", "xml"],
+            Form::Drawing => ["ladder", "Ladder, drawn", "svg"],
+            Form::Awl => ["awl", "Siemens AWL (S7-300, S7-400)", "awl"],
+            Form::Scl => ["scl", "Siemens SCL (TIA Portal)", "scl"],
+            Form::TwinCat => ["twincat", "TwinCAT 3 (TcPOU)", "TcPOU"],
+            Form::Logix => ["logix", "Logix 5000 (L5X)", "L5X"],
+            Form::Unity => ["unity", "Control Expert (XST)", "XST"],
+        }
+    }
+
+    /// The word that names it.
+    pub fn word(self) -> &'static str {
+        self.facts()[0]
+    }
+
+    /// What it is called in a list.
+    pub fn title(self) -> &'static str {
+        self.facts()[1]
+    }
+
+    /// The ending of its file.
+    pub fn ending(self) -> &'static str {
+        self.facts()[2]
+    }
+
     fn dialect(self) -> Dialect {
         let standard = Dialect { set_reset: self == Form::Dolog80, ..Dialect::default() };
         match self {
