@@ -137,6 +137,8 @@ pub(crate) enum Command {
     Export(crate::export::Export),
     /// Generate code for a controller from a chart.
     Gen(crate::generate::Gen),
+    /// Answer an editor: a server of the Language Server Protocol on standard input and output.
+    Lsp(Lsp),
     /// Explain a problem code, or list them all.
     Explain(Explain),
     /// Print the completions for a shell.
@@ -513,6 +515,15 @@ pub(crate) struct Import {
     /// Read the output back, and compare it with the file over all runs, as `g7 compare` does.
     #[arg(long, requires = "output")]
     pub(crate) compare: bool,
+}
+
+#[derive(Args, Debug)]
+#[command(after_help = "\
+The editor starts it; see the page on editors in the book.")]
+pub(crate) struct Lsp {
+    /// Accepted because most editors give it; there is no other way.
+    #[arg(long, hide = true)]
+    pub(crate) stdio: bool,
 }
 
 #[derive(Args, Debug)]

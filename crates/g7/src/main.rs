@@ -33,6 +33,7 @@ mod generate;
 mod history;
 mod import;
 mod journal;
+mod lsp;
 mod manager;
 mod message;
 mod monitor;
@@ -112,6 +113,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Import(args) => import::import(args),
         Command::Export(args) => export::export(args, prove::read_back),
         Command::Gen(args) => generate::generate(args),
+        Command::Lsp(_) => lsp::serve(),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

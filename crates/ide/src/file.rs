@@ -50,16 +50,7 @@ impl File {
             let text = g7_syntax::print(&source.document, None);
             source = Source::native(name, text.into_bytes(), 0);
         }
-        let mut file = File {
-            positions: Arc::new(Positions::new(&source.text)),
-            readable: None,
-            problems: Vec::new(),
-            version: 0,
-            imported,
-            history: History::default(),
-            source,
-        };
-        file.judge();
+        let mut file = File::of(source, imported);
         let nowhere = Span { file: FileId(0), start: 0, end: 0 };
         file.problems.extend(told.into_iter().map(|p| Problem {
             at: nowhere,
@@ -70,6 +61,28 @@ impl File {
         Ok(file)
     }
 
+    /// Reads a .g7 text, whatever its name is.
+    pub fn open_native(name: &str, text: String) -> Result<File, String> {
+        if text.len() > MOST {
+            return Err(format!("{name} is too large for the editor"));
+        }
+        Ok(File::of(Source::native(name, text.into_bytes(), 0), false))
+    }
+
+    fn of(source: Source, imported: bool) -> File {
+        let mut file = File {
+            positions: Arc::new(Positions::new(&source.text)),
+            readable: None,
+            problems: Vec::new(),
+            version: 0,
+            imported,
+            history: History::default(),
+            source,
+        };
+        file.judge();
+        file
+    }
+
     /// Makes a change and records it for undo; typed characters are joined to words.
     pub fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
         let text = spliced(self.text(), splices).ok_or("these places are none of the text")?;
@@ -78,6 +91,15 @@ impl File {
         }
         if !self.history.record(&self.source.text, splices, typed) {
             return Err("these places are none of the text".to_owned());
+        }
+        self.set_text(text);
+        Ok(())
+    }
+
+    /// Takes another text, which an editor with an undo of its own has made.
+    pub fn take(&mut self, text: String) -> Result<(), String> {
+        if text.len() > MOST {
+            return Err("the text is too large for the editor".to_owned());
         }
         self.set_text(text);
         Ok(())

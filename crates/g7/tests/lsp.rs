@@ -1,0 +1,293 @@
+//! `g7 lsp` as an editor sees it: messages of the Language Server Protocol in and out.
+#![allow(clippy::disallowed_methods, reason = "tests start programs and look at the clock")]
+
+mod common;
+
+use std::io::{BufRead, BufReader, Read, Write};
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use serde_json::{Value, json};
+use snapbox::cmd::cargo_bin;
+
+const URI: &str = "file:///plant/chart.g7";
+
+const TEXT: &str = "input go : BOOL
+output V : BOOL
+
+// One.
+// Two.
+chart Main \"the machine\" {
+  initial step 0
+  step 1 { N V }
+  0 -> 1 when go
+  1 -> 0 when not go
+}
+
+test \"it starts\" {
+  set go
+  wait 1s
+  expect V
+}
+";
+
+/// An editor: what it has sent and not yet been answered.
+struct Editor {
+    server: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+    number: u64,
+    /// Notifications that came before the answer that was waited for.
+    told: Vec<Value>,
+}
+
+impl Editor {
+    fn new() -> Editor {
+        let mut server = Command::new(cargo_bin!("g7"))
+            .arg("lsp")
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("g7 lsp starts");
+        let input = server.stdin.take().expect("its input");
+        let output = BufReader::new(server.stdout.take().expect("its output"));
+        let mut editor = Editor { server, input, output, number: 0, told: Vec::new() };
+        let hello =
+            editor.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
+        assert_eq!(hello["serverInfo"]["name"], "g7");
+        editor.tell("initialized", json!({}));
+        editor
+    }
+
+    /// An editor with a text that is open.
+    fn with(text: &str) -> Editor {
+        let mut editor = Editor::new();
+        editor.tell(
+            "textDocument/didOpen",
+            json!({ "textDocument": { "uri": URI, "languageId": "g7", "version": 1, "text": text } }),
+        );
+        editor
+    }
+
+    fn send(&mut self, message: &Value) {
+        let text = message.to_string();
+        write!(self.input, "Content-Length: {}\r\n\r\n{text}", text.len()).expect("it reads");
+        self.input.flush().expect("it reads");
+    }
+
+    fn read(&mut self) -> Value {
+        let mut length = 0;
+        loop {
+            let mut line = String::new();
+            assert!(self.output.read_line(&mut line).expect("a header") > 0, "the server ended");
+            match line.trim_end().strip_prefix("Content-Length: ") {
+                Some(n) => length = n.parse().expect("a length"),
+                None if line.trim_end().is_empty() => break,
+                None => {}
+            }
+        }
+        let mut bytes = vec![0; length];
+        self.output.read_exact(&mut bytes).expect("a message");
+        serde_json::from_slice(&bytes).expect("JSON")
+    }
+
+    fn tell(&mut self, method: &str, params: Value) {
+        self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
+    }
+
+    /// The whole answer to a request.
+    fn answer(&mut self, method: &str, params: Value) -> Value {
+        self.number += 1;
+        let number = self.number;
+        self.send(&json!({ "jsonrpc": "2.0", "id": number, "method": method, "params": params }));
+        loop {
+            let message = self.read();
+            if message["id"] == number {
+                return message;
+            }
+            self.told.push(message);
+        }
+    }
+
+    fn ask(&mut self, method: &str, params: Value) -> Value {
+        let answer = self.answer(method, params);
+        assert_eq!(answer.get("error"), None, "{method}");
+        answer["result"].clone()
+    }
+
+    /// A request about the word at a place of the text, by line and column from 0.
+    fn at(&mut self, method: &str, line: u32, character: u32) -> Value {
+        self.ask(
+            method,
+            json!({
+                "textDocument": { "uri": URI },
+                "position": { "line": line, "character": character },
+                "context": { "includeDeclaration": true },
+            }),
+        )
+    }
+
+    /// The problems that were told last of the text.
+    fn problems(&mut self) -> Value {
+        loop {
+            let message = if self.told.is_empty() { self.read() } else { self.told.remove(0) };
+            if message["method"] == "textDocument/publishDiagnostics" {
+                return message["params"].clone();
+            }
+        }
+    }
+
+    /// Takes the place of some characters on a line.
+    fn type_at(&mut self, version: u32, line: u32, from: u32, to: u32, text: &str) {
+        self.tell(
+            "textDocument/didChange",
+            json!({
+                "textDocument": { "uri": URI, "version": version },
+                "contentChanges": [{
+                    "range": { "start": { "line": line, "character": from }, "end": { "line": line, "character": to } },
+                    "text": text,
+                }],
+            }),
+        );
+    }
+}
+
+impl Drop for Editor {
+    fn drop(&mut self) {
+        self.server.kill().ok();
+        self.server.wait().ok();
+    }
+}
+
+fn range(line: u32, from: u32, to: u32) -> Value {
+    json!({ "start": { "line": line, "character": from }, "end": { "line": line, "character": to } })
+}
+
+#[test]
+fn problems_are_told_as_the_text_changes_and_taken_back_when_it_is_closed() {
+    let mut editor = Editor::with(TEXT);
+    let told = editor.problems();
+    assert_eq!((&told["uri"], &told["version"], &told["diagnostics"]), (&json!(URI), &json!(1), &json!([])));
+    editor.type_at(2, 8, 14, 16, "göh");
+    let told = editor.problems();
+    let first = &told["diagnostics"][0];
+    assert_eq!(
+        (&told["version"], &first["code"], &first["source"]),
+        (&json!(2), &json!("G0201"), &json!("g7"))
+    );
+    assert_eq!((&first["range"], &first["severity"]), (&range(8, 14, 17), &json!(1)));
+    editor.type_at(3, 8, 14, 17, "go");
+    assert_eq!(editor.problems()["diagnostics"], json!([]));
+    editor.type_at(4, 6, 10, 14, "stop");
+    assert_ne!(editor.problems()["diagnostics"], json!([]), "a syntax error");
+    editor.tell("textDocument/didClose", json!({ "textDocument": { "uri": URI } }));
+    assert_eq!(editor.problems()["diagnostics"], json!([]));
+}
+
+#[test]
+fn columns_are_counted_in_code_units() {
+    let mut editor = Editor::with("chart Main {\n  initial step 0 \"😀\" { N nothing }\n}\n");
+    let told = editor.problems();
+    let found = told["diagnostics"].as_array().expect("a list");
+    let unknown = found.iter().find(|d| d["code"] == "G0201").expect("the unknown name");
+    assert_eq!(unknown["range"], range(1, 26, 33), "the sign is two units");
+}
+
+#[test]
+fn names_are_found_explained_and_changed_everywhere() {
+    let mut editor = Editor::with(TEXT);
+    let declared = editor.at("textDocument/definition", 8, 15);
+    assert_eq!(declared["range"], range(0, 6, 8));
+    let uses = editor.at("textDocument/references", 0, 7);
+    let lines: Vec<_> =
+        uses.as_array().expect("a list").iter().map(|u| u["range"]["start"]["line"].clone()).collect();
+    assert_eq!(lines, [0, 8, 9, 13]);
+    let hover = editor.at("textDocument/hover", 8, 15);
+    let said = hover["contents"]["value"].as_str().expect("a text");
+    assert!(said.contains("input go : BOOL"), "{said}");
+    assert_eq!(editor.at("textDocument/prepareRename", 8, 15)["placeholder"], "go");
+    let rename = |editor: &mut Editor, to: &str| {
+        let params = json!({
+            "textDocument": { "uri": URI }, "position": { "line": 8, "character": 15 }, "newName": to,
+        });
+        editor.answer("textDocument/rename", params)
+    };
+    let edits = rename(&mut editor, "start")["result"]["changes"][URI].clone();
+    let edits = edits.as_array().expect("changes");
+    assert_eq!(edits.len(), 4);
+    assert!(edits.iter().all(|e| e["newText"] == "start"), "{edits:?}");
+    let refused = rename(&mut editor, "V");
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("`V`")), "{refused}");
+}
+
+#[test]
+fn a_misspelt_name_has_a_fix() {
+    let mut editor = Editor::with(&TEXT.replace("initial step", "intial step"));
+    let params = json!({
+        "textDocument": { "uri": URI }, "range": range(6, 2, 8), "context": { "diagnostics": [] },
+    });
+    let fixes = editor.ask("textDocument/codeAction", params);
+    assert_eq!(fixes[0]["title"], "write `initial`");
+    assert_eq!(fixes[0]["edit"]["changes"][URI], json!([{ "range": range(6, 2, 8), "newText": "initial" }]));
+}
+
+#[test]
+fn the_structure_of_a_text_is_told() {
+    let mut editor = Editor::with(TEXT);
+    let only = json!({ "textDocument": { "uri": URI } });
+    let outline = editor.ask("textDocument/documentSymbol", only.clone());
+    let names: Vec<_> = outline.as_array().expect("a list").iter().map(|s| s["name"].clone()).collect();
+    assert_eq!(names, ["go", "V", "Main", "it starts"]);
+    let steps: Vec<_> =
+        outline[2]["children"].as_array().expect("steps").iter().map(|s| s["name"].clone()).collect();
+    assert_eq!(steps, ["0", "1"]);
+    let folds = editor.ask("textDocument/foldingRange", only.clone());
+    let lines: Vec<_> = folds
+        .as_array()
+        .expect("a list")
+        .iter()
+        .map(|f| (f["startLine"].clone(), f["endLine"].clone()))
+        .collect();
+    assert_eq!(lines, [(json!(3), json!(4)), (json!(5), json!(10)), (json!(12), json!(16))]);
+    let lenses = editor.ask("textDocument/codeLens", only.clone());
+    let commands: Vec<_> =
+        lenses.as_array().expect("a list").iter().map(|l| l["command"]["command"].clone()).collect();
+    assert_eq!(commands, ["g7.run", "g7.draw", "g7.test"]);
+    let tokens = editor.ask("textDocument/semanticTokens/full", only);
+    let data = tokens["data"].as_array().expect("numbers");
+    // `input` is a keyword of five letters, and `go` a variable behind it.
+    assert_eq!(data[..10], [0, 0, 5, 0, 0, 0, 6, 2, 3, 0].map(|n| json!(n)));
+    let words = editor.at("textDocument/completion", 8, 16);
+    let labels: Vec<_> = words.as_array().expect("a list").iter().map(|w| w["label"].clone()).collect();
+    assert!(labels.contains(&json!("go")), "{labels:?}");
+}
+
+#[test]
+fn a_text_is_formatted() {
+    let mut editor = Editor::with(&TEXT.replace("  0 -> 1 when go", " 0->1   when go"));
+    let params = json!({ "textDocument": { "uri": URI }, "options": { "tabSize": 2, "insertSpaces": true } });
+    let edits = editor.ask("textDocument/formatting", params);
+    let lines: Vec<&str> = TEXT.lines().collect();
+    let edit = &edits[0];
+    let start = edit["range"]["start"]["character"].as_u64().expect("a column") as usize;
+    let end = edit["range"]["end"]["character"].as_u64().expect("a column") as usize;
+    let old = " 0->1   when go";
+    let new = format!("{}{}{}", &old[..start], edit["newText"].as_str().expect("a text"), &old[end..]);
+    assert_eq!((edits.as_array().map(Vec::len), new.as_str()), (Some(1), lines[8]));
+}
+
+#[test]
+fn what_means_nothing_is_answered_and_the_server_goes_on() {
+    let mut editor = Editor::with(TEXT);
+    assert_eq!(editor.answer("textDocument/nothing", json!({}))["error"]["code"], -32601);
+    assert_eq!(editor.answer("textDocument/hover", json!({ "at": 3 }))["error"]["code"], -32602);
+    editor.tell("textDocument/didChange", json!({ "textDocument": 7 }));
+    editor.tell("nothing/known", json!([1, 2]));
+    let far = json!({ "textDocument": { "uri": URI }, "position": { "line": 4_000_000, "character": 9 } });
+    assert_eq!(editor.ask("textDocument/hover", far), Value::Null);
+    let other =
+        json!({ "textDocument": { "uri": "file:///other.g7" }, "position": { "line": 0, "character": 0 } });
+    assert_eq!(editor.ask("textDocument/hover", other), Value::Null);
+    assert_eq!(editor.ask("shutdown", Value::Null), Value::Null);
+    editor.tell("exit", Value::Null);
+    assert!(editor.server.wait().expect("it ends").success());
+}
