@@ -114,6 +114,7 @@ peers: checkers
 	@test -d /usr/share/arduino/hardware/arduino/avr || { $(SUDO) apt-get update -qq && \
 		$(SUDO) apt-get install -qq --no-install-recommends arduino-core-avr; }
 	@$(call debian,cmake,cmake)
+	@$(call debian,nvim,neovim)
 	@cargo run --quiet --package g7 -- gen rust examples/bottle-conveyor --project cargo --force -o $(CORTEX) && \
 		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
@@ -125,6 +126,7 @@ checkers:
 	@$(call debian,berkeley-abc,berkeley-abc)
 	@$(call debian,spin,spin)
 	@$(call debian,cmake,cmake)
+	@$(call debian,nvim,neovim)
 	@command -v rIC3 >/dev/null || RUSTC_BOOTSTRAP=1 cargo install --quiet --locked rIC3@1.4.1 || \
 		echo "rIC3 cannot be installed: its tests are skipped"
 

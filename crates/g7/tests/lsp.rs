@@ -291,3 +291,47 @@ fn what_means_nothing_is_answered_and_the_server_goes_on() {
     editor.tell("exit", Value::Null);
     assert!(editor.server.wait().expect("it ends").success());
 }
+
+/// Opens a chart in Neovim, types a name that does not exist, and prints the problems of the buffer
+/// before and after.
+const NEOVIM: &str = r#"
+local id = vim.lsp.start_client({ name = 'g7', cmd = { vim.env.G7, 'lsp' } })
+vim.cmd('edit chart.g7')
+vim.lsp.buf_attach_client(0, id)
+local function codes()
+  local list = {}
+  for _, d in ipairs(vim.diagnostic.get(0)) do
+    table.insert(list, string.format('%s %d:%d', d.code or d.user_data.lsp.code, d.lnum, d.col))
+  end
+  return table.concat(list, ' ')
+end
+vim.wait(20000, function() return vim.lsp.get_client_by_id(id).initialized == true end)
+vim.api.nvim_win_set_cursor(0, { 9, 13 })
+vim.api.nvim_feedkeys('cwgone', 'x', false)
+vim.wait(20000, function() return codes() ~= '' end)
+io.stdout:write('typed: ' .. codes() .. '\n')
+vim.api.nvim_feedkeys('u', 'x', false)
+vim.wait(20000, function() return codes() == '' end)
+io.stdout:write('undone: ' .. codes() .. '\n')
+vim.cmd('qall!')
+"#;
+
+#[test]
+fn neovim_shows_a_problem_while_its_line_is_typed() {
+    if !g7_peers::tool("nvim") {
+        return;
+    }
+    let folder = common::Folder::with(TEXT);
+    folder.write("try.lua", NEOVIM);
+    let ran = Command::new("nvim")
+        .args(["--headless", "-u", "NONE", "-i", "NONE", "-n", "-c", "luafile try.lua"])
+        .current_dir(folder.path(""))
+        .env("G7", cargo_bin!("g7"))
+        .env("HOME", folder.path(""))
+        .stdin(Stdio::null())
+        .output()
+        .expect("nvim runs");
+    let said = String::from_utf8_lossy(&ran.stdout).replace('\r', "");
+    let errors = String::from_utf8_lossy(&ran.stderr);
+    assert_eq!(said, "typed: G0201 8:14\nundone: \n", "{errors}");
+}
