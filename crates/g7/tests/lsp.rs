@@ -24,7 +24,7 @@ chart Main \"the machine\" {
 }
 
 test \"it starts\" {
-  set go
+  set go := TRUE
   wait 1s
   expect V
 }
@@ -121,7 +121,7 @@ impl Editor {
             json!({
                 "textDocument": { "uri": URI },
                 "position": { "line": line, "character": character },
-                "context": { "includeDeclaration": true },
+                "context": { "includeDeclaration": true, "triggerKind": 1 },
             }),
         )
     }
@@ -172,7 +172,7 @@ fn problems_are_told_as_the_text_changes_and_taken_back_when_it_is_closed() {
     let first = &told["diagnostics"][0];
     assert_eq!(
         (&told["version"], &first["code"], &first["source"]),
-        (&json!(2), &json!("G0201"), &json!("g7"))
+        (&json!(2), &json!("G0202"), &json!("g7"))
     );
     assert_eq!((&first["range"], &first["severity"]), (&range(8, 14, 17), &json!(1)));
     editor.type_at(3, 8, 14, 17, "go");
@@ -188,7 +188,7 @@ fn columns_are_counted_in_code_units() {
     let mut editor = Editor::with("chart Main {\n  initial step 0 \"😀\" { N nothing }\n}\n");
     let told = editor.problems();
     let found = told["diagnostics"].as_array().expect("a list");
-    let unknown = found.iter().find(|d| d["code"] == "G0201").expect("the unknown name");
+    let unknown = found.iter().find(|d| d["code"] == "G0202").expect("the unknown name");
     assert_eq!(unknown["range"], range(1, 26, 33), "the sign is two units");
 }
 
@@ -306,7 +306,7 @@ local function codes()
   return table.concat(list, ' ')
 end
 vim.wait(20000, function() return vim.lsp.get_client_by_id(id).initialized == true end)
-vim.api.nvim_win_set_cursor(0, { 9, 13 })
+vim.api.nvim_win_set_cursor(0, { 9, 14 })
 vim.api.nvim_feedkeys('cwgone', 'x', false)
 vim.wait(20000, function() return codes() ~= '' end)
 io.stdout:write('typed: ' .. codes() .. '\n')
@@ -333,5 +333,5 @@ fn neovim_shows_a_problem_while_its_line_is_typed() {
         .expect("nvim runs");
     let said = String::from_utf8_lossy(&ran.stdout).replace('\r', "");
     let errors = String::from_utf8_lossy(&ran.stderr);
-    assert_eq!(said, "typed: G0201 8:14\nundone: \n", "{errors}");
+    assert_eq!(said, "typed: G0202 8:14\nundone: \n", "{errors}");
 }
