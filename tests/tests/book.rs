@@ -6,7 +6,6 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use g7_compile::plant;
 use g7_model::{FileId, Problem, ProfileName, Severity, StandardFunction};
 use g7_tests::book::{assemble, blocks};
 use g7_tests::generated::cases::Folder;
@@ -61,11 +60,7 @@ fn blocks(page: &str) -> Vec<(usize, String, String)> {
 /// All problems of a document: syntax, charts, plants.
 fn problems(text: &str) -> Vec<Problem> {
     let (doc, mut problems) = g7_syntax::parse(text, FileId::default());
-    let (compiled, mut more) = g7_compile::compile(&doc);
-    problems.append(&mut more);
-    for p in compiled.iter().flat_map(|c| plant::plants(&doc).map(move |p| (c, p))) {
-        problems.append(&mut plant::compile_plant(&doc, p.1, p.0, &[]).1);
-    }
+    problems.append(&mut g7_compile::check(&doc));
     problems
 }
 

@@ -35,11 +35,17 @@ pub fn check(doc: &Document) -> Vec<Problem> {
             problems.extend(plant::compile_plant(doc, plant, &charts, &[]).1);
         }
     }
-    if doc.items.is_empty() && problems.is_empty() {
-        let file = doc.notes.first().map(|n| n.at.file).unwrap_or_default();
-        let what = "there is nothing in this file";
-        let help = "a chart begins with `chart Main { … }`; `g7 new` writes one";
-        problems.push(Problem::new(&codes::EMPTY_FILE, Span { file, start: 0, end: 0 }, what).help(help));
+    if problems.is_empty() {
+        problems.extend(empty(doc));
     }
     stages::sorted(problems)
+}
+
+/// The problem of a document with nothing in it but notes.
+pub fn empty(doc: &Document) -> Option<Problem> {
+    let file = doc.notes.first().map(|n| n.at.file).unwrap_or_default();
+    let what = "there is nothing in this file";
+    let help = "a chart begins with `chart Main { … }`; `g7 new` writes one";
+    let problem = || Problem::new(&codes::EMPTY_FILE, Span { file, start: 0, end: 0 }, what).help(help);
+    doc.items.is_empty().then(problem)
 }

@@ -150,3 +150,10 @@ fn colours_only_where_wanted() {
     let never: common::Ran = folder.command(&["check"]).env("NO_COLOR", "1").assert().into();
     assert!(!never.out.contains('\u{1b}'));
 }
+
+#[test]
+fn a_file_with_nothing_in_it_is_told() {
+    let folder = Folder::with("// the pump, some day\n");
+    let ran = folder.g7(&["check", "chart.g7"]);
+    assert!(ran.out.contains("G0235"), "{}", ran.out);
+}

@@ -1,7 +1,7 @@
 //! Changes that fix a problem; offered only if they certainly do.
 
 use g7_edit::{Gesture, ItemId, Row, Splice};
-use g7_model::{Problem, codes};
+use g7_model::{Problem, TextEdit, codes};
 
 use crate::file::File;
 use crate::gestures::draft;
@@ -18,7 +18,7 @@ pub struct Fix {
 
 /// The fixes of a problem; gestures are tried only if `time` is true.
 pub fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
-    let mut found: Vec<Fix> = suggested(file, p).into_iter().collect();
+    let mut found: Vec<Fix> = carried(file, p);
     if found.is_empty() && time && file.is_clean() {
         let gestures = gestures(file, p);
         found.extend(gestures.into_iter().filter_map(|(title, gesture)| {
@@ -29,25 +29,18 @@ pub fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
     found
 }
 
-/// The word that the checker suggests in place of the wrong one.
-fn suggested(file: &File, p: &Problem) -> Option<Fix> {
-    let help = p.help.as_deref()?;
-    let range = file.source.range(p.at);
-    let there = file.text().get(range.clone())?;
-    let (word, start) = if p.code == &codes::EMPTY_RANGE {
-        (help.strip_prefix("write ")?, range.start)
-    } else {
-        let word = help.strip_prefix("did you mean `")?.strip_suffix("`?")?;
-        let dots = |s: &str| s.matches('.').count();
-        // In a path, the last name is the wrong one, unless the suggestion is a path too.
-        let behind = if dots(there) > dots(word) { there.rfind('.').map_or(0, |i| i + 1) } else { 0 };
-        (word, range.start + behind)
+/// The fixes that the problem carries.
+fn carried(file: &File, p: &Problem) -> Vec<Fix> {
+    let splice = |edit: &TextEdit| {
+        let range = file.source.range(edit.at);
+        Splice::new(range.start, range.end, edit.text.as_str())
     };
-    if there.contains(char::is_whitespace) && p.code != &codes::EMPTY_RANGE {
-        return None;
-    }
-    let splice = Splice::new(start, range.end, word);
-    Some(Fix { title: format!("write `{word}`"), splices: vec![splice] })
+    let fix = |fix: &g7_model::Fix| {
+        let mut splices: Vec<Splice> = fix.edits.iter().map(splice).collect();
+        splices.sort_by_key(|s| (s.start, s.end));
+        Fix { title: fix.label.clone(), splices }
+    };
+    p.fixes.iter().map(fix).collect()
 }
 
 /// Gestures that may fix the problem, each with its title.

@@ -140,7 +140,10 @@ fn problems(mut source: Source, args: &Check) -> Result<(Source, Vec<Problem>), 
         source.document.items.retain(|i| !matches!(i, Item::Target(..)));
         source.document.items.push(Item::Target(target, Place::default()));
     }
-    let problems = g7_rig::testing::problems(&source, args.profile)?;
+    let mut problems = g7_rig::testing::problems(&source, args.profile)?;
+    if problems.is_empty() {
+        problems.extend(g7_compile::empty(&source.document));
+    }
     Ok((source, problems))
 }
 
