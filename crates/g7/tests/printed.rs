@@ -32,7 +32,8 @@ prove never m and not a
 ";
 
 /// Commands that are only read, by how they begin or what they have in them.
-const READ: [&str; 14] = [
+const READ: [&str; 15] = [
+    "g7 lsp",
     "g7 serve",
     "g7 devices",
     "g7 plant",
