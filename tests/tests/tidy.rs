@@ -97,6 +97,8 @@ const ALLOWED: &[Arrows] = &[
             "g7-opcua",
             "g7-store",
             "g7-draw",
+            "g7-edit",
+            "g7-ide",
             "g7-rig",
             "g7-page",
         ],

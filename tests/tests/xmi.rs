@@ -11,7 +11,7 @@ use g7_tests::generated::cases::Folder;
 
 const META: &str = "agrafe-metamodel/Project-AGRAFE/model";
 
-/// What may be written as XMI: conformance cases, and the charts of the maker himself, read and written again.
+/// Documents to be written as XMI: conformance cases, and the charts of the maker himself, read and written again.
 fn charts() -> Vec<(PathBuf, String)> {
     let spec: PathBuf = [env!("CARGO_MANIFEST_DIR"), "spec"].iter().collect();
     let own = g7_peers::corpus("agrafe-xmi");

@@ -21,9 +21,9 @@ pub struct Completion {
 pub struct Choice {
     /// The word as it is shown.
     pub label: String,
-    /// What it is: `keyword`, `variable`, `step`, `chart`, `function`, `type`, `member`, …
+    /// Its kind: `keyword`, `variable`, `step`, `chart`, `function`, `type`, `member`, …
     pub kind: &'static str,
-    /// What it does, or its declaration.
+    /// Its effect or its declaration.
     pub detail: String,
     /// The text that takes the place of the typed word.
     pub insert: String,

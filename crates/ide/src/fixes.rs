@@ -10,7 +10,7 @@ use crate::ids::{self, Thing};
 /// A change that fixes a problem.
 #[derive(Debug)]
 pub struct Fix {
-    /// What it does.
+    /// Its effect, as an order.
     pub title: String,
     /// The change of the text.
     pub splices: Vec<Splice>,

@@ -1,4 +1,4 @@
-//! What an editor can offer above an item: run it, test it, prove it, draw it.
+//! Offers of an editor above an item: run it, test it, prove it, draw it.
 
 use g7_model::{Document, Item, Span};
 
@@ -9,11 +9,11 @@ use crate::file::Readable;
 pub struct Lens {
     /// The item above which it stands.
     pub at: Span,
-    /// What it does.
+    /// Its effect.
     pub work: Work,
 }
 
-/// What a lens does.
+/// The effect of a lens.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Work {
     /// Runs the file.

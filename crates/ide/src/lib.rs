@@ -1,4 +1,4 @@
-//! What an editor asks about a file, answered as plain data.
+//! Questions of an editor about a file, answered as plain data.
 //!
 //! # Where this sits
 //!

@@ -22,7 +22,7 @@ pub enum Meaning<'d> {
 pub struct Named<'d> {
     /// The name.
     pub name: &'d Name,
-    /// What it means.
+    /// Its meaning.
     pub meaning: Meaning<'d>,
     /// The part of the text in which it is known; everywhere if absent.
     pub scope: Option<Span>,

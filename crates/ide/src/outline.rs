@@ -7,7 +7,7 @@ use g7_model::{Chart, ChartItem, Document, Item, Name, Plant, PlantItem, Propert
 use crate::file::Readable;
 use crate::tables::{class, declaration, kind};
 
-/// What an entry of the outline is.
+/// The kind of an entry of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A chart, an expansion or a task.
@@ -31,7 +31,7 @@ pub enum Kind {
 pub struct Entry {
     /// Its name.
     pub name: String,
-    /// What it is.
+    /// Its kind.
     pub kind: Kind,
     /// Its comment or declaration; may be empty.
     pub detail: String,
@@ -39,7 +39,7 @@ pub struct Entry {
     pub range: Range<usize>,
     /// The bytes of its name.
     pub named: Range<usize>,
-    /// What stands in it.
+    /// The entries within it.
     pub inside: Vec<Entry>,
 }
 

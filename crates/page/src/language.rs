@@ -1,4 +1,4 @@
-//! What the text view asks, in the form in which it is sent.
+//! Answers to the text view, in the form in which they are sent.
 
 use g7_ide::logic::{self, Tongue};
 use g7_ide::{File, completion, hover, references, search, tables, tokens};

@@ -101,7 +101,7 @@ impl Form {
         self.facts()[0]
     }
 
-    /// What it is called in a list.
+    /// Its name in a list.
     pub fn title(self) -> &'static str {
         self.facts()[1]
     }

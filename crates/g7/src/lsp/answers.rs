@@ -18,7 +18,7 @@ use super::actions::at;
 use super::open::Open;
 use super::places;
 
-/// What the server can do.
+/// The abilities of the server.
 pub(super) fn capabilities() -> Value {
     json!({
         "positionEncoding": "utf-16",

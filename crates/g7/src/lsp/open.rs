@@ -27,7 +27,7 @@ pub(super) struct Open {
 struct Text {
     uri: Uri,
     version: i32,
-    /// What it is; the reason if it is nothing that G7 reads here.
+    /// The file; the reason if G7 cannot take it.
     file: Result<File, String>,
 }
 
@@ -64,7 +64,7 @@ impl Open {
         }
     }
 
-    /// What is to be told about problems since it was asked last.
+    /// The problems to be told: those of texts that changed since this was asked last.
     pub(super) fn problems(&mut self) -> Vec<PublishDiagnosticsParams> {
         let gone = std::mem::take(&mut self.closed);
         let mut told: Vec<PublishDiagnosticsParams> =
