@@ -8,6 +8,7 @@ use g7_model::{Problem, codes};
 use super::facts::Facts;
 use super::structure::{steps_of, transitions_of};
 use super::tree::statements;
+use crate::circles::closing_calls;
 use crate::ir::{ActionKind, Chart, ChartRole, Service, StepId, StepSort, StmtKind, Transition, Unit};
 
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
@@ -28,7 +29,8 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// True if a forcing order or a statement sets steps of a chart.
+/// True if a chart is not moved by its transitions alone: an order forces, enables or masks it, or a statement
+/// sets its steps.
 fn driven(unit: &Unit, chart: usize) -> bool {
     let forced = unit.steps.iter().flat_map(|s| &s.actions).any(|a| {
         matches!(&a.kind, ActionKind::Force(c, _) | ActionKind::Enable(c) | ActionKind::MaskChart(c) if c.index() == chart)
@@ -47,12 +49,10 @@ fn driven(unit: &Unit, chart: usize) -> bool {
 /// back to itself.
 fn dead_ends(facts: &Facts<'_>, chart: &Chart, problems: &mut Vec<Problem>) {
     let steps = steps_of(facts.unit, chart);
-    let starts = (chart.steps.start..chart.steps.end).map(StepId);
-    let round = starts.clone().any(|s| reach(facts, s, None).contains(&s));
-    if !round {
+    if !goes_round(facts, chart) {
         return;
     }
-    for (id, step) in starts.zip(steps) {
+    for (id, step) in (chart.steps.start..chart.steps.end).map(StepId).zip(steps) {
         let left = !facts.branches(id).is_empty() || chart.exit == Some(id);
         if left || !matches!(step.sort, StepSort::Plain) && !step.initial && steps.len() == 1 {
             continue;
@@ -65,6 +65,22 @@ fn dead_ends(facts: &Facts<'_>, chart: &Chart, problems: &mut Vec<Problem>) {
     }
 }
 
+/// True if some step of a chart can be reached from itself.
+fn goes_round(facts: &Facts<'_>, chart: &Chart) -> bool {
+    let own = |step: StepId| step.index().checked_sub(chart.steps.start as usize);
+    let followers = |step: StepId| {
+        let after = leaving(facts, step).flat_map(|t| t.to.iter().map(move |to| (*to, t.at)));
+        after.filter_map(|(to, at)| Some((own(to)?, at))).collect()
+    };
+    let all: Vec<_> = (chart.steps.start..chart.steps.end).map(|s| followers(StepId(s))).collect();
+    !closing_calls(&all).is_empty()
+}
+
+/// The transitions that follow a step.
+fn leaving<'f>(facts: &'f Facts<'_>, step: StepId) -> impl Iterator<Item = &'f Transition> {
+    facts.branches(step).iter().filter_map(|t| facts.unit.transitions.get(*t as usize))
+}
+
 /// True if a transition activates two different steps.
 fn forks(t: &Transition) -> bool {
     t.to.iter().any(|s| t.to.first() != Some(s))
@@ -73,39 +89,26 @@ fn forks(t: &Transition) -> bool {
 /// True if some transition waits for two of the branches of a fork, or if none of them comes back to
 /// it: branches that go round for themselves are started together on purpose.
 fn joins(facts: &Facts<'_>, fork: &Transition) -> bool {
-    let arms: Vec<Vec<StepId>> = fork.to.iter().map(|s| reach(facts, *s, Some(fork))).collect();
-    let ends = |t: &Transition| {
-        let on: Vec<usize> = arms
-            .iter()
-            .enumerate()
-            .filter(|(_, a)| t.from.iter().any(|s| a.contains(s)))
-            .map(|(i, _)| i)
-            .collect();
-        t.from.len() > 1 && on.len() > 1
-    };
+    let arms: Vec<Vec<bool>> = fork.to.iter().map(|s| reach(facts, *s, fork)).collect();
+    let on = |arm: &[bool], steps: &[StepId]| steps.iter().any(|s| arm.get(s.index()) == Some(&true));
+    let ends = |t: &Transition| t.from.len() > 1 && arms.iter().filter(|a| on(a, &t.from)).nth(1).is_some();
     // A branch that ends in a sink gives its token away.
-    let sink = |t: &Transition| t.to.is_empty() && t.from.iter().any(|s| arms.iter().any(|a| a.contains(s)));
-    let back = arms.iter().any(|a| fork.from.iter().any(|s| a.contains(s)));
+    let sink = |t: &Transition| t.to.is_empty() && arms.iter().any(|a| on(a, &t.from));
+    let back = arms.iter().any(|a| on(a, &fork.from));
     !back || facts.unit.transitions.iter().any(|t| ends(t) || sink(t))
 }
 
-/// The steps that a token can come to from a step, by transitions other than `except`; the step
-/// itself only if it comes back to it.
-fn reach(facts: &Facts<'_>, from: StepId, except: Option<&Transition>) -> Vec<StepId> {
-    let mut found: Vec<StepId> = if except.is_some() { vec![from] } else { Vec::new() };
+/// By step: true if a token can come there from a step, by transitions other than `except`. The step
+/// itself counts.
+fn reach(facts: &Facts<'_>, from: StepId, except: &Transition) -> Vec<bool> {
+    let mut found = vec![false; facts.unit.steps.len()];
     let mut pending = vec![from];
     while let Some(step) = pending.pop() {
-        for t in facts.branches(step).iter().filter_map(|t| facts.unit.transitions.get(*t as usize)) {
-            if except.is_some_and(|e| std::ptr::eq(e, t)) {
-                continue;
-            }
-            for to in &t.to {
-                if !found.contains(to) {
-                    found.push(*to);
-                    pending.push(*to);
-                }
-            }
+        if found.get_mut(step.index()).is_none_or(|f| std::mem::replace(f, true)) {
+            continue;
         }
+        let others = leaving(facts, step).filter(|t| !std::ptr::eq(*t, except));
+        pending.extend(others.flat_map(|t| &t.to));
     }
     found
 }
