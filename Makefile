@@ -126,7 +126,6 @@ checkers:
 	@$(call debian,berkeley-abc,berkeley-abc)
 	@$(call debian,spin,spin)
 	@$(call debian,cmake,cmake)
-	@$(call debian,nvim,neovim)
 	@command -v rIC3 >/dev/null || RUSTC_BOOTSTRAP=1 cargo install --quiet --locked rIC3@1.4.1 || \
 		echo "rIC3 cannot be installed: its tests are skipped"
 

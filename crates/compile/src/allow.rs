@@ -6,7 +6,7 @@
 //! text, so the language and its printer need no form for them (`docs/decisions/050-allow.md`).
 
 use g7_model::codes::{self, Code};
-use g7_model::{Chart, ChartItem, Document, Item, Note, Problem, Severity, Span};
+use g7_model::{ChartItem, Document, Item, Note, Problem, Severity, Span};
 
 /// A silence: its note, the code and the bytes that it covers.
 struct Silence {
@@ -19,7 +19,7 @@ struct Silence {
 pub(crate) fn apply(doc: &Document, problems: &mut Vec<Problem>) {
     let mut silences = Vec::new();
     let mut wrong = Vec::new();
-    for note in doc.notes.iter() {
+    for note in &doc.notes {
         match read(doc, note) {
             Some(Ok(silence)) => silences.push(silence),
             Some(Err(problem)) => wrong.push(problem),
@@ -84,36 +84,8 @@ fn read(doc: &Document, note: &Note) -> Option<Result<Silence, Problem>> {
 fn behind(doc: &Document, note: Span) -> Option<Span> {
     let chart = doc.charts().find(|c| c.at.0.start < note.start && note.end <= c.at.0.end);
     let places: Vec<Span> = match chart {
-        Some(chart) => items(chart),
-        None => doc.items.iter().map(place).collect(),
+        Some(chart) => chart.items.iter().map(ChartItem::at).collect(),
+        None => doc.items.iter().map(Item::at).collect(),
     };
     places.into_iter().filter(|at| at.start >= note.end && at.file == note.file).min_by_key(|at| at.start)
-}
-
-fn items(chart: &Chart) -> Vec<Span> {
-    let place = |item: &ChartItem| match item {
-        ChartItem::Var(v) => v.at.0,
-        ChartItem::Step(s) => s.at.0,
-        ChartItem::Transition(t) => t.at.0,
-        ChartItem::Pre(_, at) | ChartItem::Post(_, at) => at.0,
-        ChartItem::Action(a) => a.at.0,
-        ChartItem::Section(s) => s.at.0,
-    };
-    chart.items.iter().map(place).collect()
-}
-
-fn place(item: &Item) -> Span {
-    match item {
-        Item::Profile(p) => p.at.0,
-        Item::Cycle(_, at) | Item::Target(_, at) | Item::Pre(_, at) | Item::Post(_, at) => at.0,
-        Item::Var(v) => v.at.0,
-        Item::Chart(c) => c.at.0,
-        Item::Action(a) => a.at.0,
-        Item::Section(s) => s.at.0,
-        Item::Function(f) => f.at.0,
-        Item::Plant(p) => p.at.0,
-        Item::Test(t) => t.at.0,
-        Item::Prove(p) => p.at.0,
-        Item::Layout(l) => l.at.0,
-    }
 }

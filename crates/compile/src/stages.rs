@@ -54,9 +54,11 @@ pub fn compile_with(
         problems.append(&mut wrong);
     }
     problems.append(&mut properties(doc, &mut unit, &mut scopes));
-    let judged = clear(check::check(doc, &unit), &problems, unread(doc));
+    let unread = unread(doc);
+    let gaps = !unread.is_empty();
+    let judged = clear(check::check(doc, &unit), &problems, unread);
     problems.extend(judged);
-    if problems.iter().any(|p| p.severity() == Severity::Error) || !unread(doc).is_empty() {
+    if gaps || problems.iter().any(|p| p.severity() == Severity::Error) {
         // A part with an error may be the one that reads the input or leaves the step.
         let loose = [&codes::DEAD_END, &codes::NEVER_JOINS, &codes::INPUT_UNREAD, &codes::OUTPUT_UNDRIVEN];
         problems.retain(|p| !loose.contains(&p.code));

@@ -277,7 +277,7 @@ pub(crate) struct Run {
     /// With --headless: record everything that enters the charts, for --replay.
     #[arg(conflicts_with = "online", long, value_name = "FILE")]
     pub(crate) record: Option<PathBuf>,
-    /// With --trace and --record: replace a file that g7 did not write; never the chart itself.
+    /// Let --trace and --record replace a file that g7 did not write. The chart itself is never replaced.
     #[arg(conflicts_with = "online", long)]
     pub(crate) force: bool,
     #[command(flatten)]
@@ -311,7 +311,7 @@ pub(crate) struct Test {
     /// Write a JUnit report.
     #[arg(long, value_name = "FILE")]
     pub(crate) junit: Option<PathBuf>,
-    /// With --junit: replace a file that g7 did not write.
+    /// Let --junit replace a file that g7 did not write.
     #[arg(long)]
     pub(crate) force: bool,
     /// Only list the tests.

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use g7_model::{Severity, codes};
+use g7_model::codes;
 
 use crate::cli::Explain;
 use crate::failure::{Failure, Verdict};
@@ -12,10 +12,7 @@ pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
     let mut out = anstream::stdout().lock();
     let Some(id) = &args.code else {
         for code in codes::ALL {
-            let sort = match code.severity {
-                Severity::Error => "error",
-                Severity::Warning => "warning",
-            };
+            let sort = code.severity.name();
             writeln!(out, "{}{}{:#}  {sort:<7}  {}", style::STRONG, code.id, style::STRONG, code.title)?;
         }
         return Ok(out.flush().map(|()| Verdict::Fine)?);

@@ -141,10 +141,7 @@ fn clip(source: &Source, span: Span) -> std::ops::Range<usize> {
 
 /// A problem as JSON.
 pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
-    let severity = match problem.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    };
+    let severity = problem.severity().name();
     let related: Vec<Value> = problem
         .related
         .iter()

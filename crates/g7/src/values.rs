@@ -38,7 +38,7 @@ pub(crate) fn targets() -> Words<TargetPlc> {
     Words { all, read: target }
 }
 
-/// The code of a problem. What is no code is told by the command.
+/// The code of a problem. Every word is accepted here; `g7 explain` reports a code that does not exist.
 pub(crate) fn problem_codes() -> Words<String> {
     let all = || codes::ALL.iter().map(|code| PossibleValue::new(code.id).help(code.title)).collect();
     Words { all, read: |text| Ok(text.to_owned()) }

@@ -30,7 +30,7 @@ test \"it starts\" {
 }
 ";
 
-/// An editor: what it has sent and not yet been answered.
+/// The test in the role of an editor: it sends messages to `g7 lsp` and reads what comes back.
 struct Editor {
     server: Child,
     input: ChildStdin,

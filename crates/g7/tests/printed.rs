@@ -64,7 +64,8 @@ fn commands(text: &str) -> BTreeSet<String> {
         }
         let end = [bare.find("  "), bare.find(" #")].into_iter().flatten().min().unwrap_or(bare.len());
         let command = bare.get(..end).unwrap_or(bare);
-        // A synopsis has words in capitals for what the user names, or brackets.
+        // A line with brackets, or with words in capitals that the user replaces, shows a form of a command and
+        // is no command to run.
         let named = |w: &str| w.len() > 2 && w.chars().all(|c| c.is_ascii_uppercase() || ".]".contains(c));
         if !command.contains('[') && !command.contains('…') && !command.split(' ').any(named) {
             found.extend(command.split(" && ").filter(|c| c.starts_with("g7 ")).map(str::to_owned));

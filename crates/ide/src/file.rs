@@ -27,14 +27,12 @@ pub struct File {
 }
 
 /// Greatest length of a text that is opened, in bytes.
-pub const MOST: usize = 16 << 20;
+const MOST: usize = 16 << 20;
 
 impl File {
     /// Reads a text; a file of a foreign format is converted to .g7 text.
     pub fn open(name: &str, text: String) -> Result<File, String> {
-        if text.len() > MOST {
-            return Err(format!("{name} is too large for the editor"));
-        }
+        fits(name, &text)?;
         let mut source = Source::new(name, text.into_bytes(), 0);
         let imported = source.format.is_some();
         let mut told = Vec::new();
@@ -63,9 +61,7 @@ impl File {
 
     /// Reads a .g7 text, whatever its name is.
     pub fn open_native(name: &str, text: String) -> Result<File, String> {
-        if text.len() > MOST {
-            return Err(format!("{name} is too large for the editor"));
-        }
+        fits(name, &text)?;
         Ok(File::of(Source::native(name, text.into_bytes(), 0), false))
     }
 
@@ -98,9 +94,7 @@ impl File {
 
     /// Takes another text, which an editor with an undo of its own has made.
     pub fn take(&mut self, text: String) -> Result<(), String> {
-        if text.len() > MOST {
-            return Err("the text is too large for the editor".to_owned());
-        }
+        fits("the text", &text)?;
         self.set_text(text);
         Ok(())
     }
@@ -181,6 +175,11 @@ impl File {
             None => self.present(false),
         }
     }
+}
+
+/// Refuses a text that is too long, under the name of what it belongs to.
+fn fits(what: &str, text: &str) -> Result<(), String> {
+    if text.len() > MOST { Err(format!("{what} is too large for the editor")) } else { Ok(()) }
 }
 
 /// The nearest byte before a place, or at it, at which a character begins.

@@ -36,6 +36,6 @@ pub mod search;
 pub mod tables;
 pub mod tokens;
 
-pub use file::{File, MOST, Readable};
+pub use file::{File, Readable};
 pub use format::format;
 pub use positions::Positions;

@@ -74,7 +74,7 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
 
 /// A property has no name; its text stands for it.
 fn first_line(p: &Property, text: &str) -> String {
-    let words = text.get(range(p.at.0)).unwrap_or("prove");
+    let words = text.get(p.at.0.bytes()).unwrap_or("prove");
     words.lines().next().unwrap_or("prove").chars().take(80).collect()
 }
 
@@ -126,7 +126,7 @@ fn variables(v: &VarDecl) -> Vec<Entry> {
 }
 
 fn entry(name: &Name, kind: Kind, detail: &str, at: Span) -> Entry {
-    let (range, named) = (range(at), range(name.at.0));
+    let (range, named) = (at.bytes(), name.at.0.bytes());
     // A name lies inside its item, also where several names share a declaration.
     let named = if range.start <= named.start && named.end <= range.end { named } else { range.clone() };
     Entry { name: name.text.to_string(), kind, detail: detail.to_owned(), range, named, inside: Vec::new() }
@@ -138,14 +138,10 @@ fn titled(name: String, at: Span) -> Entry {
         name,
         kind: Kind::Test,
         detail: String::new(),
-        range: range(at),
-        named: range(at),
+        range: at.bytes(),
+        named: at.bytes(),
         inside: Vec::new(),
     }
-}
-
-fn range(span: Span) -> Range<usize> {
-    span.start as usize..span.end as usize
 }
 
 /// The parts of a text that an editor can fold: everything between braces, and notes in a row.

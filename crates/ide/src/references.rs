@@ -22,8 +22,8 @@ pub fn uses(file: &File, at: usize) -> Uses {
     let known = g7_compile::references(&file.source.document);
     match known.at(offset(at)) {
         Some(named) => Uses {
-            all: known.of(named).into_iter().map(range).collect(),
-            declared: known.declaration(named).map(range),
+            all: known.of(named).into_iter().map(Span::bytes).collect(),
+            declared: known.declaration(named).map(Span::bytes),
         },
         // Names that are not indexed, such as a function's name inside the function, are found by
         // spelling.
@@ -38,14 +38,14 @@ fn spelled(file: &File, at: usize) -> Option<Uses> {
         .filter(|t| file.text().get(t.start..t.end).is_some_and(|w| w.trim_matches('`') == word.text))
         .map(|t| t.start..t.end)
         .collect();
-    Some(Uses { all, declared: Some(range(named.name.at.0)) })
+    Some(Uses { all, declared: Some(named.name.at.0.bytes()) })
 }
 
 /// The name at a byte that can be changed: its place, and its spelling without back-ticks.
 pub fn changeable(file: &File, at: usize) -> Option<(Range<usize>, String)> {
     let known = g7_compile::references(&file.source.document);
     let found = known.use_at(offset(at)).filter(|_| file.is_clean())?;
-    let whole = range(found.at);
+    let whole = found.at.bytes();
     let name = whole.start + found.before..whole.end;
     let text = file.text().get(name.clone())?;
     Some((name, text.trim_matches('`').to_owned()))
@@ -58,8 +58,4 @@ pub fn rename(file: &File, at: usize, to: &str) -> Result<Vec<Splice>, String> {
 
 fn offset(at: usize) -> u32 {
     u32::try_from(at).unwrap_or(u32::MAX)
-}
-
-fn range(span: Span) -> Range<usize> {
-    span.start as usize..span.end as usize
 }

@@ -28,7 +28,7 @@ pub struct Variable {
     pub ty: String,
     /// Its initial value.
     pub init: String,
-    /// The address of its channel.
+    /// The address of its input or output channel, such as `%I0.0`.
     pub address: String,
     /// True if the channel carries the complement.
     pub inverted: bool,

@@ -402,6 +402,39 @@ impl Document {
     }
 }
 
+impl Item {
+    /// Its place in the text.
+    pub fn at(&self) -> Span {
+        match self {
+            Item::Profile(p) => p.at.0,
+            Item::Cycle(_, at) | Item::Target(_, at) | Item::Pre(_, at) | Item::Post(_, at) => at.0,
+            Item::Var(v) => v.at.0,
+            Item::Chart(c) => c.at.0,
+            Item::Action(a) => a.at.0,
+            Item::Section(s) => s.at.0,
+            Item::Function(f) => f.at.0,
+            Item::Plant(p) => p.at.0,
+            Item::Test(t) => t.at.0,
+            Item::Prove(p) => p.at.0,
+            Item::Layout(l) => l.at.0,
+        }
+    }
+}
+
+impl ChartItem {
+    /// Its place in the text.
+    pub fn at(&self) -> Span {
+        match self {
+            ChartItem::Var(v) => v.at.0,
+            ChartItem::Step(s) => s.at.0,
+            ChartItem::Transition(t) => t.at.0,
+            ChartItem::Pre(_, at) | ChartItem::Post(_, at) => at.0,
+            ChartItem::Action(a) => a.at.0,
+            ChartItem::Section(s) => s.at.0,
+        }
+    }
+}
+
 impl Chart {
     /// Its steps, in the order of the text.
     pub fn steps(&self) -> impl Iterator<Item = &Step> {

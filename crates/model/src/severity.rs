@@ -8,3 +8,13 @@ pub enum Severity {
     /// Has no meaning in the standard and cannot be compiled.
     Error,
 }
+
+impl Severity {
+    /// Its word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Severity::Warning => "warning",
+            Severity::Error => "error",
+        }
+    }
+}

@@ -1,7 +1,6 @@
 //! Answers to the text view, in the form in which they are sent.
 
-use g7_ide::logic::{self, Tongue};
-use g7_ide::{File, completion, hover, references, search, tables, tokens};
+use g7_ide::{File, completion, hover, logic, references, search, tables, tokens};
 use serde::{Deserialize, Serialize};
 
 use crate::places::units;
@@ -156,7 +155,7 @@ pub(crate) fn tables(file: &File) -> Tables {
 /// A language of controllers.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Speech {
+pub(crate) enum Tongue {
     St,
     Il,
     Ld,
@@ -174,7 +173,7 @@ pub(crate) struct Piece {
 
 #[derive(Debug, Serialize)]
 struct Form {
-    tongue: Speech,
+    tongue: Tongue,
     text: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     picture: Option<String>,
@@ -183,9 +182,9 @@ struct Form {
 pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     let form = |f: logic::Form| Form {
         tongue: match f.tongue {
-            Tongue::St => Speech::St,
-            Tongue::Il => Speech::Il,
-            Tongue::Ld => Speech::Ld,
+            logic::Tongue::St => Tongue::St,
+            logic::Tongue::Il => Tongue::Il,
+            logic::Tongue::Ld => Tongue::Ld,
         },
         text: f.text,
         picture: f.picture,
@@ -203,11 +202,11 @@ pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     Ok(logic::logic(file, id)?.into_iter().map(piece).collect())
 }
 
-pub(crate) fn logic_read(tongue: Speech, text: &str) -> Result<String, String> {
+pub(crate) fn logic_read(tongue: Tongue, text: &str) -> Result<String, String> {
     let tongue = match tongue {
-        Speech::St => Tongue::St,
-        Speech::Il => Tongue::Il,
-        Speech::Ld => Tongue::Ld,
+        Tongue::St => logic::Tongue::St,
+        Tongue::Il => logic::Tongue::Il,
+        Tongue::Ld => logic::Tongue::Ld,
     };
     logic::read(tongue, text)
 }

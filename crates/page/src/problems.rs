@@ -2,7 +2,7 @@
 
 use g7_ide::File;
 use g7_ide::ids;
-use g7_model::{Document, Problem, Severity};
+use g7_model::{Document, Problem};
 use serde::Serialize;
 
 use crate::places::{Change, outward};
@@ -65,7 +65,7 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
     Row {
         code: p.code.id,
         title: p.code.title,
-        severity: if p.severity() == Severity::Error { "error" } else { "warning" },
+        severity: p.severity().name(),
         what: p.what.clone(),
         help: p.help.clone(),
         from,

@@ -68,7 +68,7 @@ pub(crate) enum Request {
     },
     /// Converts logic in one of these languages to an expression of the text.
     LogicRead {
-        tongue: crate::language::Speech,
+        tongue: crate::language::Tongue,
         text: String,
     },
     /// The style sheet of the drawings.

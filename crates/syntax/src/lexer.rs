@@ -95,6 +95,27 @@ pub(crate) struct Lexer<'a> {
     pub(crate) problems: Problems,
 }
 
+impl Tok {
+    /// True for a token, other than a word, that can begin an operand and nothing else.
+    pub(crate) fn begins_operand(self) -> bool {
+        matches!(
+            self,
+            Tok::Ticked
+                | Tok::Int
+                | Tok::Real
+                | Tok::Time
+                | Tok::Typed
+                | Tok::Str
+                | Tok::Direct
+                | Tok::LParen
+                | Tok::LBracket
+                | Tok::Bang
+                | Tok::Rise
+                | Tok::Fall
+        )
+    }
+}
+
 impl<'a> Lexer<'a> {
     /// A lexer that starts at a byte of the text.
     pub(crate) fn new(text: &'a str, file: FileId, pos: usize) -> Lexer<'a> {

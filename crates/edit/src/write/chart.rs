@@ -61,14 +61,7 @@ impl Items<'_, '_> {
 
 impl Style<ChartItem> for Items<'_, '_> {
     fn at(&self, thing: &ChartItem) -> Span {
-        match thing {
-            ChartItem::Var(v) => v.at.0,
-            ChartItem::Step(s) => s.at.0,
-            ChartItem::Transition(t) => t.at.0,
-            ChartItem::Pre(_, at) | ChartItem::Post(_, at) => at.0,
-            ChartItem::Action(a) => a.at.0,
-            ChartItem::Section(s) => s.at.0,
-        }
+        thing.at()
     }
 
     fn edit(&self, sheet: &mut Sheet<'_>, old: &ChartItem, new: &ChartItem) {

@@ -22,7 +22,7 @@ struct Items<'d, 's> {
 
 impl Style<Item> for Items<'_, '_> {
     fn at(&self, thing: &Item) -> Span {
-        place(thing)
+        thing.at()
     }
 
     fn edit(&self, sheet: &mut Sheet<'_>, old: &Item, new: &Item) {
@@ -37,7 +37,7 @@ impl Style<Item> for Items<'_, '_> {
                 }
             }
             (a, b) if a != b => {
-                let at = place(a);
+                let at = a.at();
                 sheet.put(at.start as usize, at.end as usize, printed(b.clone()));
             }
             _ => {}
@@ -45,7 +45,7 @@ impl Style<Item> for Items<'_, '_> {
     }
 
     fn fresh(&self, sheet: &Sheet<'_>, new: &Item, _indent: &str) -> String {
-        let raw = self.draft.raw.get(&place(new).start).filter(|_| is_fresh(place(new).into()));
+        let raw = self.draft.raw.get(&new.at().start).filter(|_| is_fresh(new.at().into()));
         match (new, raw) {
             (_, Some(raw)) => raw.clone(),
             (Item::Chart(c), None) => chart::fresh(sheet, self.draft, c),
@@ -108,23 +108,6 @@ fn place_text(place: &PlaceAt) -> String {
         Placed::Comment(text) => format!("comment {}", g7_syntax::show_comment(text)),
     };
     format!("{what} at ({}, {})", number(place.x), number(place.y))
-}
-
-/// The place of an item.
-pub(crate) fn place(item: &Item) -> Span {
-    match item {
-        Item::Profile(p) => p.at.0,
-        Item::Cycle(_, at) | Item::Target(_, at) | Item::Pre(_, at) | Item::Post(_, at) => at.0,
-        Item::Var(v) => v.at.0,
-        Item::Chart(c) => c.at.0,
-        Item::Action(a) => a.at.0,
-        Item::Section(s) => s.at.0,
-        Item::Function(f) => f.at.0,
-        Item::Plant(p) => p.at.0,
-        Item::Test(t) => t.at.0,
-        Item::Prove(p) => p.at.0,
-        Item::Layout(l) => l.at.0,
-    }
 }
 
 /// The group of an item: items of one group stand together without blank lines; group 9 always has

@@ -1,7 +1,7 @@
 //! Problems as annotations of GitHub: commands in the output of a workflow, which GitHub shows at the lines of a
 //! change.
 
-use g7_model::{Problem, Severity};
+use g7_model::Problem;
 
 use super::checked::Checked;
 use crate::sources::Source;
@@ -13,10 +13,8 @@ pub(super) fn of(all: &[Checked]) -> String {
 }
 
 fn line(source: &Source, problem: &Problem) -> String {
-    let word = match problem.severity() {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    };
+    // GitHub's words are the same.
+    let word = problem.severity().name();
     let range = source.range(problem.at);
     let ((line, column), (end_line, end_column)) = (source.position(range.start), source.position(range.end));
     let file = source.name.strip_prefix("./").unwrap_or(&source.name);

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::codes::{self, Code};
-use g7_model::{Fix, Problem, Severity, Span};
+use g7_model::{Fix, Problem, Span};
 use serde_json::{Value, json};
 
 use super::checked::Checked;
@@ -30,18 +30,11 @@ pub(super) fn of(all: &[Checked]) -> Value {
     }))
 }
 
-fn level(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Error => "error",
-        Severity::Warning => "warning",
-    }
-}
-
 fn rule(code: &Code) -> Value {
     let mut rule = json!({
         "id": code.id,
         "shortDescription": { "text": code.title },
-        "defaultConfiguration": { "level": level(code.severity) },
+        "defaultConfiguration": { "level": code.severity.name() },
     });
     if let Some(page) = g7_page::explain(code.id) {
         rule["help"] = json!({ "text": page, "markdown": page });
@@ -62,7 +55,7 @@ fn result(source: &Source, problem: &Problem, rules: &BTreeMap<&str, usize>) -> 
         .collect();
     let mut row = json!({
         "ruleId": problem.code.id, "ruleIndex": rules.get(problem.code.id),
-        "level": level(problem.severity()), "message": { "text": format!("{}{help}", problem.what) },
+        "level": problem.severity().name(), "message": { "text": format!("{}{help}", problem.what) },
         "locations": [location(source, problem.at)],
         "relatedLocations": related,
     });

@@ -32,7 +32,7 @@ use serde::de::DeserializeOwned;
 use crate::failure::{Failure, Verdict};
 use open::Open;
 
-/// Serves one editor until it says goodbye.
+/// Answers one editor until it sends `shutdown` and `exit`, or closes the connection.
 pub(crate) fn serve() -> Result<Verdict, Failure> {
     let (connection, threads) = Connection::stdio();
     let served = session(&connection);
@@ -82,8 +82,8 @@ fn send(connection: &Connection, message: Message) -> Result<(), Failure> {
     connection.sender.send(message).map_err(|e| Failure::Usage(format!("the editor broke off: {e}")))
 }
 
-/// Takes what the editor tells about its texts; what means nothing is left aside, as the protocol
-/// demands of notifications.
+/// Reads a notification of the editor about its texts. A notification that is not known, or cannot be
+/// read, is ignored, because the protocol has no answer to a notification.
 fn hear(open: &mut Open, told: Notification) {
     match told.method.as_str() {
         DidOpenTextDocument::METHOD => {

@@ -49,7 +49,7 @@ pub(super) fn share(
                 }
             });
         }
-        // With this one gone, the results end when the threads do.
+        // Only the threads hold a sender now, so `recv` ends when the last of them has ended.
         drop(give);
         let mut waiting = std::collections::BTreeMap::new();
         let mut taken = 0;

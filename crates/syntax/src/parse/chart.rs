@@ -7,6 +7,9 @@ use g7_model::{
     Transition, codes, words,
 };
 
+/// The words that a step can begin with.
+const STEP_WORDS: [&str; 6] = ["initial", "entry", "exit", "enclosing", "step", "macro"];
+
 /// A slip that is told in two places: the words, and the way out.
 const STEP_IN_TRANSITION: (&str, &str) =
     ("only the name of the step stands in a transition", "leave out `step`");
@@ -72,7 +75,7 @@ impl Parser<'_> {
     }
 
     fn chart_item(&mut self, items: &mut Vec<ChartItem>) -> bool {
-        self.fold(&["initial", "entry", "exit", "enclosing", "step", "macro"]);
+        self.fold(&STEP_WORDS);
         if self.at_transition() || self.step_for_transition() {
             self.line(|p| p.transitions(items));
             return true;
@@ -83,9 +86,7 @@ impl Parser<'_> {
         }
         let start = self.cur.start;
         let item = match self.word() {
-            "initial" | "entry" | "exit" | "enclosing" | "step" | "macro" => {
-                ChartItem::Step(self.line(Parser::step))
-            }
+            word if STEP_WORDS.contains(&word) => ChartItem::Step(self.line(Parser::step)),
             "pre" => {
                 self.bump();
                 let body = self.body();
@@ -198,11 +199,8 @@ impl Parser<'_> {
 
     /// Reports text that begins no item of a chart.
     fn lost_chart_item(&mut self, start: u32) {
-        let at = self.here();
         if matches!(self.cur.kind, Tok::RParen | Tok::RBracket) {
-            let what = format!("this `{}` closes nothing", self.slice(self.cur));
-            let help = "delete it, or write the bracket that it closes";
-            self.problem_help(&codes::UNCLOSED, at, &what, help);
+            self.closes_nothing();
         } else if self.at_name() {
             self.bump();
             let name = self.text.get(start as usize..self.prev.end as usize).unwrap_or_default();
@@ -226,7 +224,7 @@ impl Parser<'_> {
         let mut kind = StepKind::Plain;
         loop {
             let at = self.here();
-            self.fold(&["initial", "entry", "exit", "enclosing", "step", "macro"]);
+            self.fold(&STEP_WORDS);
             let sort = match self.word() {
                 "initial" => {
                     initial = true;

@@ -52,22 +52,8 @@ impl Parser<'_> {
                         "not" | "NOT" | "TRUE" | "FALSE" | "true" | "false" | "rise" | "fall" | "delay"
                     )
             }
-            Tok::Ticked
-            | Tok::Int
-            | Tok::Real
-            | Tok::Time
-            | Tok::Typed
-            | Tok::Str
-            | Tok::Direct
-            | Tok::LParen
-            | Tok::LBracket
-            | Tok::Bang
-            | Tok::Slash
-            | Tok::Minus
-            | Tok::Rise
-            | Tok::Fall
-            | Tok::Eq => true,
-            _ => false,
+            Tok::Slash | Tok::Minus | Tok::Eq => true,
+            kind => kind.begins_operand(),
         }
     }
 

@@ -70,8 +70,7 @@ impl Parser<'_> {
         let at = self.here();
         let word = self.word();
         if self.at(Tok::RBrace) {
-            let help = "delete it, or write the bracket that it closes";
-            self.problem_help(&codes::UNCLOSED, at, "this `}` closes nothing", help);
+            self.closes_nothing();
             self.bump();
             return;
         }
@@ -185,7 +184,7 @@ impl Parser<'_> {
             self.bump();
         }
         let at = self.since(start);
-        let text = self.text.get(start as usize..at.end as usize).unwrap_or_default();
+        let text = self.text_at(at);
         if text == "bound" {
             return Some(Switch::Bound(self.integer_u32("the largest number of passes in a scan")));
         }

@@ -30,9 +30,9 @@ impl Parser<'_> {
         out
     }
 
-    /// Reads a statement of Structured Text. It may stand on several lines, but where a line ends in
-    /// the middle of an expression, the next one could as well be a statement of its own; a `;` at
-    /// the end decides.
+    /// Reads a statement of Structured Text, which may stand on several lines. If a line ends in the
+    /// middle of an expression, the next line may continue it or be another statement. A `;` at the end
+    /// says that it continues; without one, the operand is reported as missing.
     pub(super) fn statement_line<T>(&mut self, read: impl FnOnce(&mut Self) -> T) -> T {
         self.within(Extent::Statement, |p| {
             let out = read(p);
@@ -92,33 +92,15 @@ impl Parser<'_> {
         if token.kind != Tok::Word || self.slice(token) != first {
             return false;
         }
-        let mut ahead = self.lexer_behind(token);
-        let next = ahead.token();
+        let next = self.lexer.ahead(token).token();
         next.kind == Tok::Word && self.slice(next) == second
-    }
-
-    /// A lexer that reads from the end of a token.
-    pub(super) fn lexer_behind(&self, token: Token) -> crate::lexer::Lexer<'_> {
-        self.lexer.ahead(token)
     }
 
     /// True if a token at the start of a line goes on with the line before: it can begin nothing.
     fn goes_on(&self, token: Token) -> bool {
         match token.kind {
             Tok::Word => BinaryOp::of_word(self.slice(token)).is_some(),
-            Tok::Ticked
-            | Tok::Int
-            | Tok::Real
-            | Tok::Time
-            | Tok::Typed
-            | Tok::Str
-            | Tok::Direct
-            | Tok::LParen
-            | Tok::LBracket
-            | Tok::Bang
-            | Tok::Rise
-            | Tok::Fall => false,
-            _ => true,
+            kind => !kind.begins_operand(),
         }
     }
 

@@ -135,7 +135,7 @@ impl<'a> Parser<'a> {
     }
 
     fn slice(&self, token: Token) -> &'a str {
-        self.text.get(token.start as usize..token.end as usize).unwrap_or_default()
+        self.text_at(self.span_of(token))
     }
 
     /// The current word; empty for any other token.
@@ -232,7 +232,7 @@ impl<'a> Parser<'a> {
 
     /// The text at a place.
     fn text_at(&self, at: Span) -> &'a str {
-        self.text.get(at.start as usize..at.end as usize).unwrap_or_default()
+        self.text.get(at.bytes()).unwrap_or_default()
     }
 
     /// From a byte to the end of the last token read.
@@ -356,12 +356,20 @@ impl<'a> Parser<'a> {
         }
     }
 
+    /// Reports a closing bracket that belongs to no other.
+    fn closes_nothing(&mut self) {
+        let at = self.here();
+        let what = format!("this `{}` closes nothing", self.slice(self.cur));
+        let help = "delete it, or write the bracket that it closes";
+        self.problem_help(&codes::UNCLOSED, at, &what, help);
+    }
+
     /// Expects the bracket that closes the one at `open`.
     fn close(&mut self, kind: Tok, sign: &str, open: Span) -> bool {
         let here = self.eat(kind);
         if !here && !self.silent() {
             let (at, words) = self.expected_words(sign);
-            let open_sign = self.text.get(open.start as usize..open.end as usize).unwrap_or_default();
+            let open_sign = self.text_at(open);
             self.report(at, || {
                 Problem::new(&codes::UNCLOSED, at, words)
                     .related(open, format!("`{open_sign}` stands here"))

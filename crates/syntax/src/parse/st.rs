@@ -253,7 +253,8 @@ impl Parser<'_> {
             let condition = self.condition();
             self.then_word(St::Then, "THEN");
             if self.eat(Tok::LBrace) {
-                // The braces of other languages are read to their end.
+                // C and Rust have braces here. The problem is reported already, so the block is read up
+                // to its `}`, and what is inside causes no second problem.
                 arms.push((condition, self.statements(false)));
                 self.eat(Tok::RBrace);
                 return StmtKind::If(arms, otherwise);

@@ -4,7 +4,7 @@ use super::Printer;
 use super::item::starts;
 use crate::quote;
 use g7_model::{
-    Action, ActionKind, Chart, ChartItem, ChartKind, ExprKind, Literal, Name, Order, Situation, Span, Step,
+    Action, ActionKind, Chart, ChartItem, ChartKind, ExprKind, Literal, Name, Order, Situation, Step,
     StepKind, Target, Transition,
 };
 
@@ -19,7 +19,7 @@ impl Printer<'_> {
         self.comment(chart.comment.as_deref());
         self.time_clause("every", chart.every, chart.at.0);
         self.push(" ");
-        let first = starts(chart.items.first().map(place));
+        let first = starts(chart.items.first().map(ChartItem::at));
         self.braces(chart.at.0, first, |p| p.chart_items(&chart.items));
     }
 
@@ -34,7 +34,7 @@ impl Printer<'_> {
     }
 
     fn chart_item(&mut self, item: &ChartItem, before: Option<&ChartItem>, apart: bool) {
-        let at = place(item);
+        let at = item.at();
         match item {
             ChartItem::Var(v) => self.line(at, apart, |p| p.variable(v)),
             ChartItem::Step(s) if !s.braces && s.actions.is_empty() => self.line(at, apart, |p| p.step(s)),
@@ -243,17 +243,6 @@ fn has_block(action: &Action) -> bool {
         | ActionKind::OnEvent { work, .. }
         | ActionKind::EachScan { work, .. } => matches!(work, Work::Block(_)),
         _ => false,
-    }
-}
-
-fn place(item: &ChartItem) -> Span {
-    match item {
-        ChartItem::Var(v) => v.at.0,
-        ChartItem::Step(s) => s.at.0,
-        ChartItem::Transition(t) => t.at.0,
-        ChartItem::Pre(_, at) | ChartItem::Post(_, at) => at.0,
-        ChartItem::Action(a) => a.at.0,
-        ChartItem::Section(s) => s.at.0,
     }
 }
 

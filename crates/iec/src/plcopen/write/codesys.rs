@@ -75,7 +75,8 @@ fn of_chart(chart: &mut Chart, lost: &mut impl FnMut(Span, String)) {
     }
     let title = chart.name.text.clone();
     let guards = || held.iter().map(|name| Guard { chart: &title, name });
-    // CODESYS holds the actions on variables as well, so a condition that is the guard alone says nothing more.
+    // While a flag holds a chart, CODESYS also holds its actions on variables. So a condition of an action that
+    // consists of guards alone is left out: CODESYS does the same without it.
     for item in &mut chart.items {
         let ChartItem::Step(step) = item else { continue };
         for action in &mut step.actions {
@@ -86,7 +87,8 @@ fn of_chart(chart: &mut Chart, lost: &mut impl FnMut(Span, String)) {
     }
 }
 
-/// Removes `IF flag THEN INITCHART(chart) END_IF` from the body before the chart; false if it is not there.
+/// Removes the statement `IF flag THEN INITCHART(chart) END_IF` from the PRE section of the chart. Returns false
+/// if there is no such statement.
 fn take_reset(chart: &mut Chart, flag: &str) -> bool {
     let title = chart.name.text.clone();
     let mut found = false;
