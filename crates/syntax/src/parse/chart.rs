@@ -153,8 +153,9 @@ impl Parser<'_> {
     /// Reads a word of the language in capitals as that word. Several in a row are told once.
     fn fold(&mut self, list: &[&'static str]) {
         let word = self.word();
-        let small = word.to_ascii_lowercase();
-        let Some(meant) = list.iter().copied().find(|w| *w == small && *w != word) else { return };
+        let Some(meant) = list.iter().copied().find(|w| *w != word && w.eq_ignore_ascii_case(word)) else {
+            return;
+        };
         let again = self.corrected.is_some_and(|(start, _)| start == self.prev.start);
         // A step or a variable can have such a name.
         let next = self.peek();
@@ -164,8 +165,8 @@ impl Parser<'_> {
         }
         if !again {
             let at = self.here();
-            let help = format!("write it in small letters: `{small}`");
-            let mut fix = Fix::sure(help.clone(), at, small);
+            let help = format!("write it in small letters: `{meant}`");
+            let mut fix = Fix::sure(help.clone(), at, meant);
             // The words behind it are mended with it.
             let mut token = next;
             while token.kind == Tok::Word && list.contains(&&*self.slice(token).to_ascii_lowercase()) {
