@@ -95,7 +95,7 @@ impl Place<'_> {
             (TokenKind::Colon, _) if self.declares() => types(),
             (TokenKind::Arrow, _) => self.steps(),
             (_, "profile") => {
-                let one = |p: ProfileName| choice(p.name(), "profile", words::of_profile(p)[0], p.name());
+                let one = |p: ProfileName| choice(p.name(), "profile", p.does()[0], p.name());
                 ProfileName::ALL.map(one).into()
             }
             (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout") => self.charts(),

@@ -1,6 +1,6 @@
 //! The words that something begins with: an item of a file, chart or plant, an action, a statement of a test.
 
-use super::Word;
+use super::row::Word;
 
 /// Words that an item of a file can begin with.
 pub const FILE: &[Word] = &[

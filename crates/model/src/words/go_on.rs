@@ -1,6 +1,6 @@
 //! The words that go on with an item within its line, and the words of the statements of Structured Text.
 
-use super::Word;
+use super::row::Word;
 
 /// Words that go on with an item within its line. Where they are not reserved they are names elsewhere.
 pub const CLAUSES: &[Word] = &[

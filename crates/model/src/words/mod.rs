@@ -4,63 +4,20 @@
 //! The parser in `syntax` reads it to know reserved words and to find the nearest word to a misspelt one;
 //! completion shows it; the grammars in `editors/` are generated from it. Qualifiers, types, profiles and
 //! functions have tables of their own with a row for each (`Qualifier`, `Type`, `ProfileName`,
-//! `StandardFunction`); the words about them stand here. `crates/syntax/tests/words.rs` holds the table to
+//! `StandardFunction`); the words about them stand here, those about profiles beside `ProfileName`. `crates/syntax/tests/words.rs` holds the table to
 //! the parser. What a word means in full stands in `docs/book/src/language/grammar.md`.
 
 mod begin;
 mod go_on;
+mod row;
 mod values;
 
 pub use begin::{ACTION, CHART, FILE, LAYOUT, PLANT, TEST};
 pub use go_on::{CLAUSES, STATEMENT};
-pub use values::{OPERATOR, PART, STEP, VALUE, of_profile, of_qualifier, of_switch, of_type};
+pub use row::{Told, Word};
+pub use values::{OPERATOR, PART, STEP, VALUE, of_qualifier, of_switch, of_type};
 
 use crate::Qualifier;
-
-/// A short sentence in English, French and Portuguese.
-pub type Told = [&'static str; 3];
-
-/// A row of the table: a word at one kind of place.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Word {
-    /// As written.
-    pub text: &'static str,
-    /// What usually follows, up to the place where the author goes on: ` step` behind `initial`.
-    pub then: &'static str,
-    /// True if it is never a plain name.
-    pub reserved: bool,
-    /// True if it may be written in capitals as well: a word of IEC 61131-3.
-    pub capitals: bool,
-    /// What it does.
-    pub does: Told,
-}
-
-impl Word {
-    /// A word that is reserved.
-    const fn reserved(text: &'static str, does: Told) -> Word {
-        Word { text, then: "", reserved: true, capitals: false, does }
-    }
-
-    /// A word that is a name elsewhere.
-    const fn free(text: &'static str, does: Told) -> Word {
-        Word { text, then: "", reserved: false, capitals: false, does }
-    }
-
-    /// A reserved word of IEC 61131-3.
-    const fn of_iec(text: &'static str, does: Told) -> Word {
-        Word { text, then: "", reserved: true, capitals: true, does }
-    }
-
-    /// The same word, with what usually follows.
-    const fn then(self, then: &'static str) -> Word {
-        Word { then, ..self }
-    }
-
-    /// The word and what usually follows, as completion offers it.
-    pub fn phrase(&self) -> String {
-        [self.text, self.then].concat()
-    }
-}
 
 /// The kinds of places, each with its words.
 pub const PLACES: [(&str, &[Word]); 12] = [

@@ -1,7 +1,7 @@
 //! The words of expressions, and what the words of other tables do: qualifiers, types, profiles, switches.
 
-use super::{Told, Word};
-use crate::{FbKind, ProfileName, Qualifier, Switch, Type};
+use super::row::{Told, Word};
+use crate::{FbKind, Qualifier, Switch, Type};
 
 /// Operators that are words.
 pub const OPERATOR: &[Word] = &[
@@ -45,7 +45,7 @@ pub const PART: &[Word] = &[
     Word::free("lost", ["parts that have fallen off", "pièces tombées", "peças caídas"]),
 ];
 
-/// What a qualifier does.
+/// The sentence about a qualifier.
 pub const fn of_qualifier(q: Qualifier) -> Told {
     match q {
         Qualifier::N => {
@@ -72,7 +72,7 @@ pub const fn of_qualifier(q: Qualifier) -> Told {
     }
 }
 
-/// What a type holds, or what a function block does.
+/// The sentence about a type or a function block.
 pub const fn of_type(ty: Type) -> Told {
     match ty {
         Type::Bool => ["FALSE or TRUE", "FALSE ou TRUE", "FALSE ou TRUE"],
@@ -133,26 +133,7 @@ pub const fn of_type(ty: Type) -> Told {
     }
 }
 
-/// What rules a profile has.
-pub const fn of_profile(p: ProfileName) -> Told {
-    match p {
-        ProfileName::Iec60848 => [
-            "GRAFCET, with a search for stability",
-            "GRAFCET, avec recherche de stabilité",
-            "GRAFCET, com procura de estabilidade",
-        ],
-        ProfileName::Iec61131 => ["SFC of IEC 61131-3", "SFC de la CEI 61131-3", "SFC da IEC 61131-3"],
-        ProfileName::Pl7 => {
-            ["PL7 on TSX Micro and Premium", "PL7 sur TSX Micro et Premium", "PL7 em TSX Micro e Premium"]
-        }
-        ProfileName::Unity => {
-            ["Unity Pro and Control Expert", "Unity Pro et Control Expert", "Unity Pro e Control Expert"]
-        }
-        ProfileName::Jgrafchart => ["JGrafchart", "JGrafchart", "JGrafchart"],
-    }
-}
-
-/// What a switch of a profile does.
+/// The sentence about a switch of a profile.
 pub const fn of_switch(s: Switch) -> Told {
     match s {
         Switch::Stable(true) => {
