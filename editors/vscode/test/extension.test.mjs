@@ -1,0 +1,204 @@
+// The extension as it is shipped, with a stub of VS Code: its commands, its panels and their server. With G7
+// in the environment, the real program serves the page.
+import assert from 'node:assert/strict';
+import { execFileSync } from 'node:child_process';
+import { chmodSync, existsSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import Module, { createRequire } from 'node:module';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import { after, test } from 'node:test';
+
+const require = createRequire(import.meta.url);
+const here = new URL('..', import.meta.url).pathname;
+const { vscode, did, commands, settings } = require('./stub/vscode.cjs');
+const clients = [];
+
+class LanguageClient {
+  constructor(id, name, server, options) {
+    Object.assign(this, { id, name, server, options, state: 'made' });
+    clients.push(this);
+  }
+  async start() {
+    if (this.server.command === 'missing') throw new Error('not found');
+    this.state = 'started';
+  }
+  async stop() {
+    this.state = 'stopped';
+  }
+}
+
+const scratch = mkdtempSync(join(tmpdir(), 'g7-vscode-'));
+after(() => rmSync(scratch, { recursive: true, force: true }));
+
+/** The sources, bundled with the client of the protocol left out, which the stub takes the place of. */
+function load() {
+  const out = join(scratch, 'extension.cjs');
+  const options = ['--bundle', '--platform=node', '--format=cjs', '--external:vscode', '--external:vscode-languageclient/node', `--outfile=${out}`];
+  execFileSync(join(here, 'node_modules/.bin/esbuild'), [join(here, 'src/extension.ts'), ...options, '--log-level=error']);
+  const resolve = Module._load;
+  Module._load = (name, ...rest) => {
+    if (name === 'vscode') return vscode;
+    if (name === 'vscode-languageclient/node') return { LanguageClient };
+    return resolve(name, ...rest);
+  };
+  return require(out);
+}
+
+const extension = load();
+const context = { subscriptions: [] };
+const chart = join(scratch, 'a tank.g7');
+writeFileSync(chart, 'chart A {\n  initial step 0\n}\n');
+
+async function until(holds, what) {
+  for (let i = 0; i < 300; i++) {
+    if (holds()) return;
+    await new Promise((done) => setTimeout(done, 20));
+  }
+  assert.fail(what);
+}
+
+test('the language server is started for files and for new texts', async () => {
+  await extension.activate(context);
+  assert.equal(clients.length, 1);
+  assert.deepEqual(clients[0].server, { command: 'g7', args: ['lsp'] });
+  assert.deepEqual(clients[0].options.documentSelector.map((s) => s.scheme), ['file', 'untitled']);
+  assert.equal(clients[0].state, 'started');
+});
+
+test('each command of the manifest is there, and no other', () => {
+  const manifest = JSON.parse(readFileSync(join(here, 'package.json'), 'utf8'));
+  const told = manifest.contributes.commands.map((c) => c.command).sort();
+  assert.deepEqual([...commands.keys()].sort(), told);
+});
+
+test('a lens above a test runs that test, by its title', async () => {
+  did.length = 0;
+  const uri = vscode.Uri.file(chart).toString();
+  await commands.get('g7.test')(uri, 'stops after "five" bottles');
+  const [[what, task]] = did;
+  assert.equal(what, 'task');
+  assert.equal(task.execution.process, 'g7');
+  assert.deepEqual(task.execution.args, ['test', chart, '--filter', 'stops after "five" bottles']);
+  assert.equal(task.execution.options.cwd, scratch);
+});
+
+test('without an argument the file of the editor in front is run, saved before', async () => {
+  did.length = 0;
+  let saved = 0;
+  const uri = vscode.Uri.file(chart);
+  vscode.window.activeTextEditor = { document: { uri } };
+  vscode.workspace.textDocuments = [{ uri, isDirty: true, save: async () => ++saved > 0 }];
+  await commands.get('g7.run')();
+  await commands.get('g7.prove')();
+  vscode.workspace.textDocuments = [];
+  assert.equal(saved, 2);
+  assert.deepEqual(did.map(([, task]) => task.execution.args), [['run', chart], ['prove', chart, '--all']]);
+});
+
+test('a text that is no file is refused in words', async () => {
+  did.length = 0;
+  await commands.get('g7.run')('untitled:Untitled-1');
+  assert.equal(did[0][0], 'error');
+  assert.match(did[0][1], /save/);
+});
+
+test('a program that is missing is told, with the way to the setting', async () => {
+  did.length = 0;
+  settings.path = 'missing';
+  await commands.get('g7.restart')();
+  assert.equal(clients[0].state, 'stopped');
+  assert.match(did[0][1], /`missing lsp` cannot be started/);
+  settings.path = 'g7';
+  await commands.get('g7.restart')();
+  assert.equal(clients.at(-1).state, 'started');
+});
+
+/** A program in place of g7 that prints an address like `g7 serve`, and notes how it was called and ended. */
+function fake() {
+  const file = join(scratch, 'fake-g7');
+  const log = join(scratch, 'log');
+  writeFileSync(
+    file,
+    `#!/usr/bin/env node
+const { appendFileSync } = require('node:fs');
+appendFileSync(${JSON.stringify(log)}, JSON.stringify(process.argv.slice(2)) + '\\n');
+process.on('SIGINT', () => { appendFileSync(${JSON.stringify(log)}, 'ended\\n'); process.exit(0); });
+console.log('http://127.0.0.1:47123/?token=abc');
+setInterval(() => {}, 1000);
+`,
+  );
+  chmodSync(file, 0o755);
+  return { file, log: () => (existsSync(log) ? readFileSync(log, 'utf8').trim().split('\n') : []) };
+}
+
+test('the drawing: one server for a folder, one panel for a file, and an end with the last panel', async () => {
+  const { file, log } = fake();
+  settings.path = file;
+  did.length = 0;
+  const other = join(scratch, 'b.g7');
+  writeFileSync(other, '');
+  await commands.get('g7.draw')(vscode.Uri.file(chart));
+  await commands.get('g7.draw')(vscode.Uri.file(other));
+  await commands.get('g7.draw')(vscode.Uri.file(chart));
+  const panels = did.filter(([what]) => what === 'panel').map(([, panel]) => panel);
+  assert.equal(panels.length, 2);
+  assert.deepEqual(did.at(-1), ['reveal', 'a tank.g7']);
+  assert.deepEqual(log().map((l) => JSON.parse(l)), [['serve', scratch, '--no-open', '--framed']]);
+  const html = panels[0].webview.html;
+  assert.match(html, /<iframe src="http:\/\/127\.0\.0\.1:47123\/\?token=abc&#38;file=a\+tank\.g7"/);
+  assert.match(html, /frame-src http:\/\/127\.0\.0\.1:47123;/);
+  panels[0].dispose();
+  panels[1].dispose();
+  await until(() => log().at(-1) === 'ended', 'the server goes on without a panel');
+  settings.path = 'g7';
+});
+
+test('a server that does not start is told in the panel', async () => {
+  did.length = 0;
+  settings.path = join(scratch, 'nothing');
+  await commands.get('g7.draw')(vscode.Uri.file(chart));
+  const panel = did.find(([what]) => what === 'panel')[1];
+  assert.match(panel.webview.html, /cannot be started/);
+  assert.doesNotMatch(panel.webview.html, /iframe src/);
+  panel.dispose();
+  settings.path = 'g7';
+});
+
+test('the real program serves a page that a panel may show', { skip: process.env.G7 === undefined }, async () => {
+  did.length = 0;
+  settings.path = process.env.G7;
+  await commands.get('g7.draw')(vscode.Uri.file(chart));
+  const panel = did.find(([what]) => what === 'panel')[1];
+  const address = /iframe src="([^"]+)"/.exec(panel.webview.html)?.[1].replaceAll('&#38;', '&');
+  assert.ok(address, panel.webview.html);
+  const answer = await fetch(address);
+  assert.equal(answer.status, 200);
+  assert.equal(answer.headers.get('x-frame-options'), null);
+  assert.match(answer.headers.get('content-security-policy'), /frame-ancestors [^;]*vscode-webview:/);
+  panel.dispose();
+  settings.path = 'g7';
+});
+
+test('the packed extension has every file that its manifest names', () => {
+  const file = join(scratch, 'g7.vsix');
+  execFileSync('node', [join(here, 'pack.mjs'), file]);
+  const names = execFileSync('unzip', ['-Z1', file], { encoding: 'utf8' }).trim().split('\n');
+  const read = (name) => execFileSync('unzip', ['-p', file, name.replace('[', '\\[')], { encoding: 'utf8' });
+  const manifest = JSON.parse(read('extension/package.json'));
+  const inside = (path) => `extension/${path.replace(/^\.\//, '')}`;
+  const wanted = [manifest.main, ...manifest.contributes.grammars.map((g) => g.path), ...manifest.contributes.languages.map((l) => l.configuration)].map(inside);
+  for (const name of ['extension.vsixmanifest', '[Content_Types].xml', 'extension/LICENSE.txt', 'extension/README.md', ...wanted]) {
+    assert.ok(names.includes(name), `${name} is missing`);
+  }
+  const types = read('[Content_Types].xml');
+  for (const name of names.filter((n) => n !== '[Content_Types].xml')) {
+    assert.ok(types.includes(`Extension=".${name.split('.').at(-1)}"`), `${name} has no type`);
+  }
+  for (const name of names.filter((n) => n.endsWith('.json'))) JSON.parse(read(name));
+  assert.match(read('extension.vsixmanifest'), new RegExp(`Id="${manifest.name}" Version="${manifest.version}"`));
+});
+
+test('deactivating ends the language server', async () => {
+  await extension.deactivate();
+  assert.equal(clients.at(-1).state, 'stopped');
+});
