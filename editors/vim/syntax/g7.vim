@@ -44,10 +44,9 @@ syntax match g7Complement /[A-Za-z0-9_)\]`]\@1<='\+/
 syntax region g7String start=/[A-Za-z0-9_)\]`']\@1<!'/ skip=/\$./ end=/'\|$/ oneline
 syntax region g7Comment start=/"/ skip=/\\./ end=/"\|$/ oneline
 syntax region g7Quoted start=/`/ skip=/\\./ end=/`\|$/ oneline
-syntax keyword g7Todo TODO FIXME XXX contained
-syntax match g7Note /\/\/.*$/ contains=g7Todo,@Spell
-syntax region g7Note start=/\/\*/ end=/\*\// contains=g7Note,g7Todo,@Spell fold
-syntax region g7Note start=/(\*/ end=/\*)/ contains=g7Note,g7Todo,@Spell fold
+syntax match g7Note /\/\/.*$/ contains=@Spell
+syntax region g7Note start=/\/\*/ end=/\*\// contains=g7Note,@Spell fold
+syntax region g7Note start=/(\*/ end=/\*)/ contains=g7Note,@Spell fold
 syntax region g7Block start=/{/ end=/}/ transparent fold
 syntax sync minlines=200
 
@@ -72,7 +71,6 @@ highlight default link g7Quoted Identifier
 highlight default link g7String String
 highlight default link g7Comment String
 highlight default link g7Note Comment
-highlight default link g7Todo Todo
 
 let b:current_syntax = 'g7'
 let &cpo = s:save

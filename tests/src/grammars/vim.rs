@@ -30,10 +30,9 @@ syntax match g7Complement /[A-Za-z0-9_)\]`]\@1<='\+/
 syntax region g7String start=/[A-Za-z0-9_)\]`']\@1<!'/ skip=/\$./ end=/'\|$/ oneline
 syntax region g7Comment start=/"/ skip=/\\./ end=/"\|$/ oneline
 syntax region g7Quoted start=/`/ skip=/\\./ end=/`\|$/ oneline
-syntax keyword g7Todo TODO FIXME XXX contained
-syntax match g7Note /\/\/.*$/ contains=g7Todo,@Spell
-syntax region g7Note start=/\/\*/ end=/\*\// contains=g7Note,g7Todo,@Spell fold
-syntax region g7Note start=/(\*/ end=/\*)/ contains=g7Note,g7Todo,@Spell fold
+syntax match g7Note /\/\/.*$/ contains=@Spell
+syntax region g7Note start=/\/\*/ end=/\*\// contains=g7Note,@Spell fold
+syntax region g7Note start=/(\*/ end=/\*)/ contains=g7Note,@Spell fold
 syntax region g7Block start=/{/ end=/}/ transparent fold
 syntax sync minlines=200
 
@@ -61,7 +60,6 @@ const LINKS: &[(&str, &str)] = &[
     ("g7String", "String"),
     ("g7Comment", "String"),
     ("g7Note", "Comment"),
-    ("g7Todo", "Todo"),
 ];
 
 /// The syntax file.

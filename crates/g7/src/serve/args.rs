@@ -53,6 +53,9 @@ pub(crate) struct Serve {
     /// Do not open a browser; only print the address.
     #[arg(long)]
     pub(super) no_open: bool,
+    /// Let VS Code show the page in a panel; without it no other page may frame it.
+    #[arg(long, conflicts_with_all = ["host", "users", "online"])]
+    pub(super) framed: bool,
     /// The chart to open first, as its path in the folder.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<String>,

@@ -29,6 +29,8 @@ pub(super) struct Rules {
     /// The file of the log.
     pub(super) log: Option<PathBuf>,
     foreign: Foreign,
+    /// Editors on this machine may show the page in a frame.
+    framed: bool,
 }
 
 /// A file that the arguments name, or the io file beside itself.
@@ -65,13 +67,15 @@ impl Rules {
         let whole = time(|s| s.session.as_ref().map(|at| at.value));
         let open = |path: PathBuf| Access::open(&path, Lasts::of(idle, whole), audit.clone()).map(Arc::new);
         let access = users.map(open).transpose()?;
-        Ok(Rules { host, port, certificate, access, audit: audit.clone(), log, foreign: Foreign::default() })
+        let (audit, foreign, framed) = (audit.clone(), Foreign::default(), args.framed);
+        Ok(Rules { host, port, certificate, access, audit, log, foreign, framed })
     }
 
     /// The guard that judges requests.
     pub(super) fn guard(&self, pass: Pass, bound: SocketAddr) -> Guard {
         let certificate = self.certificate.clone();
-        Guard { pass, bound, certificate, audit: self.audit.clone(), foreign: self.foreign.clone() }
+        let (audit, foreign, framed) = (self.audit.clone(), self.foreign.clone(), self.framed);
+        Guard { pass, bound, certificate, audit, foreign, framed }
     }
 
     /// The door that lets connections in.

@@ -121,6 +121,19 @@ async fn every_answer_keeps_the_page_to_itself() {
 }
 
 #[tokio::test]
+async fn only_editors_may_frame_the_page_and_only_where_the_server_was_asked_to_let_them() {
+    let server = Server::new().await;
+    assert_eq!(server.get("/").await.header("x-frame-options"), Some("DENY"));
+    let server = Server::with(|args| args.framed = true, Limits::default()).await;
+    let reply = server.get("/").await;
+    assert_eq!(reply.header("x-frame-options"), None);
+    let policy = reply.header("content-security-policy").expect("a policy");
+    let frames = policy.split("; ").find(|p| p.starts_with("frame-ancestors")).expect("of frames");
+    let wanted = "frame-ancestors 'self' vscode-webview: vscode-file: https://*.vscode-cdn.net";
+    assert_eq!(frames, wanted);
+}
+
+#[tokio::test]
 async fn the_page_comes_from_its_folder_only() {
     let server = Server::new().await;
     fs::write(server.path("index.html"), "<p>page").expect("a page");
