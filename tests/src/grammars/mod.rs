@@ -3,11 +3,13 @@
 //! `make grammars` writes the files; `tests/tests/grammars.rs` sees whether they are up to date, and that they
 //! read every chart of the repository.
 
+mod charts;
 mod textmate;
 mod tree_sitter;
 mod vim;
 mod vocabulary;
 
+pub use charts::charts;
 pub use vocabulary::Vocabulary;
 
 /// A generated file: its path from the root of the repository, and its text.

@@ -50,6 +50,7 @@ pub(super) fn grammar(words: &Vocabulary) -> String {
         let this = format!("#block{}", if open == r"\(\*" { "-round" } else { "" });
         json!({ "name": "comment.block.g7", "begin": open, "end": close, "patterns": [{ "include": this }] })
     };
+    let bracket = json!({ "name": "punctuation.bracket.g7" });
     let grammar = json!({
         "$schema": "https://raw.githubusercontent.com/martinring/tmlanguage/master/tmlanguage.json",
         "comment": "generated from the table of words of G7 by `make grammars`; do not edit",
@@ -87,11 +88,11 @@ pub(super) fn grammar(words: &Vocabulary) -> String {
             })]),
             "durations": rules(vec![json!({
                 "name": "constant.numeric.duration.g7",
-                "match": r"(?<![\w.])(?:[0-9][0-9_]*(?:\.[0-9][0-9_]*)?(?:d|h|ms|us|ns|m|s|D|H|MS|US|NS|M|S)(?:[0-9_.a-zA-Z]*[0-9a-zA-Z])?|(?i:t|time)#[+-]?[0-9][0-9_.a-zA-Z]*)",
+                "match": r"(?<!\w)(?<!\w\.)(?:[0-9][0-9_]*(?:\.[0-9][0-9_]*)?(?:d|h|ms|us|ns|m|s|D|H|MS|US|NS|M|S)(?:[0-9_.a-zA-Z]*[0-9a-zA-Z])?|(?i:t|time)#[+-]?[0-9][0-9_.a-zA-Z]*)",
             })]),
             "numbers": rules(vec![json!({
                 "name": "constant.numeric.g7",
-                "match": format!(r"(?<![\w.])(?:(?i:{})#[+-]?)?(?:[0-9]+#[0-9A-Za-z_]+|[0-9][0-9_]*(?:\.[0-9][0-9_]*)?(?:[eE][+-]?[0-9]+)?)|(?<![\w.])(?i:bool)#\w+", any(&words.types)),
+                "match": format!(r"(?<!\w)(?<!\w\.)(?:(?i:{})#[+-]?)?(?:[0-9]+#[0-9A-Za-z_]+|[0-9][0-9_]*(?:\.[0-9][0-9_]*)?(?:[eE][+-]?[0-9]+)?)|(?<![\w.])(?i:bool)#\w+", any(&words.types)),
             })]),
             "declarations": rules(vec![
                 declared("chart|macrochart|task|plant", "entity.name.class"),
@@ -106,8 +107,9 @@ pub(super) fn grammar(words: &Vocabulary) -> String {
                     { "include": "#notes" },
                     { "name": "support.constant.profile.g7", "match": format!(r"\b(?:{}|{})\b", any(&words.profiles), any(&words.targets)) },
                     { "include": "#switches" },
-                    { "begin": r"\{", "end": r"\}", "patterns": [
-                        { "include": "#notes" }, { "include": "#switches" }, { "include": "#numbers" },
+                    { "begin": r"\{", "beginCaptures": { "0": bracket }, "end": r"\}", "endCaptures": { "0": bracket },
+                        "patterns": [
+                        { "include": "#notes" }, { "include": "#switches" }, { "include": "#numbers" }, { "include": "#signs" },
                     ] },
                 ],
             })]),

@@ -84,18 +84,18 @@ pub(super) fn syntax(words: &Vocabulary) -> String {
     let no_name = r"\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!";
     out.push_str(&format!("syntax match g7Function /\\<\\%({}\\)\\>\\ze\\s*(/\n", any(&words.functions)));
     out.push_str(&format!(
-        "syntax match g7Clause /\\S\\s\\+\\zs\\<\\%({}\\)\\>{no_name}/\n",
+        "syntax match g7Clause /\\%(\\S\\s\\+\\)\\@40<=\\<\\%({}\\)\\>{no_name}/\n",
         any(&words.clauses)
     ));
     out.push_str(&format!(
-        "syntax match g7Clause /\\%(pre\\|post\\|each\\)\\s\\+\\zs\\%(st\\|il\\|ld\\|scan\\)\\>/\n"
+        "syntax match g7Clause /\\%(\\%(pre\\|post\\|each\\)\\s\\+\\)\\@20<=\\%(st\\|il\\|ld\\|scan\\)\\>/\n"
     ));
     out.push_str(&format!(
         "syntax match g7Qualifier /\\<\\%({}\\)\\>\\ze\\s\\+[A-Za-z0-9_`%({{]/\n",
         any(&words.qualifiers)
     ));
     out.push_str(&format!(
-        "syntax match g7Statement /\\%(^\\|[{{}};]\\)\\s*\\zs\\%({}\\)\\>{no_name}/\n",
+        "syntax match g7Statement /\\%(\\%(^\\|[{{}};]\\)\\s*\\)\\@80<=\\<\\%({}\\)\\>{no_name}/\n",
         any(&words.begins)
     ));
     out.push_str(SIGNS);
