@@ -31,7 +31,11 @@ PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 NODE := $(PYTHON)/node
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
+# The extension for VS Code; its packages are pinned by its lock.
+EXTENSION := editors/vscode
+EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
+
+.PHONY: grammars vscode tree-sitter zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -70,7 +74,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: WASM := quick-wasm
-test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.package-lock.json
+test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.package-lock.json $(EXTENDED)
 	cargo fmt --all --check
 	@$(call debian,chromium,chromium)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: its tests are skipped"
@@ -79,6 +83,9 @@ test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.pack
 	@{ nice $(CLIPPY) && nice $(TESTS) --no-run; } >$(TALLY)/compiled 2>&1 & compiled=$$!; \
 		told=0; { $(STORIES); } || told=$$?; wait $$compiled || { cat $(TALLY)/compiled; exit 1; }; exit $$told
 	{ $(TESTS) && cargo test --quiet --doc --package g7-engine; } 2>&1 | tee $(TALLY)/crates.log
+	@test -f $(EXTENDED) || printf 'packages of the extension missing\teditors/vscode\n' >>$(G7_SKIPS)
+	@test ! -f $(EXTENDED) || { cd $(EXTENSION) && npm run --silent check && npm run --silent build && \
+		G7=$(DEBUG)/g7 npm run --silent test | tee $(TALLY)/vscode.log; }
 	$(DEBUG)/g7 check examples
 	$(DEBUG)/g7 test examples | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
@@ -95,6 +102,27 @@ $(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
 	@mkdir -p $(NODE) && cp tests/peers/node/package*.json $(NODE)
 	@cd $(NODE) && npm ci --silent --no-audit --no-fund && touch node_modules/.package-lock.json || \
 		echo "mqtt and sparkplug-payload cannot be installed: their tests are skipped"
+
+$(EXTENDED): $(EXTENSION)/package-lock.json
+	@cd $(EXTENSION) && npm ci --silent --no-audit --no-fund --ignore-scripts && touch node_modules/.package-lock.json || \
+		echo "the packages of the extension for VS Code cannot be installed: its tests are skipped"
+
+## the grammars of other editors anew, from the table of words
+grammars:
+	cargo run --quiet --package g7-tests --bin grammars
+
+## the extension for VS Code as a file that `code --install-extension` takes
+vscode: $(EXTENDED)
+	@cd $(EXTENSION) && npm run --silent package
+
+## the parser of tree-sitter from its grammar, for Neovim, Helix and Zed
+tree-sitter:
+	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10
+	cd editors/tree-sitter-g7 && tree-sitter generate
+
+## the extension for Zed in target/zed, with a repository for its grammar
+zed: tree-sitter
+	editors/zed/pack.sh $(abspath $(or $(CARGO_TARGET_DIR),target))/zed
 
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
@@ -120,6 +148,10 @@ peers: checkers
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*' 'fmpy==0.3.*' 'pyecore==0.15.*'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
+
+	@command -v vim >/dev/null || { $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends vim; }
+	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10 || \
+		echo "tree-sitter cannot be installed: its test is skipped"
 
 # rIC3 is GPL: it is asked, never linked. Its libraries use parts of the language that are not stable yet.
 checkers:

@@ -23,5 +23,6 @@ pub fn all() -> Vec<Generated> {
         ("editors/vim/syntax/g7.vim", vim::syntax(&words)),
         ("editors/tree-sitter-g7/words.json", tree_sitter::words(&words)),
         ("editors/tree-sitter-g7/queries/highlights.scm", tree_sitter::highlights(&words)),
+        ("editors/zed/languages/g7/highlights.scm", tree_sitter::highlights(&words)),
     ]
 }
