@@ -52,7 +52,7 @@ async function fileOf(uri: unknown): Promise<string | undefined> {
     void vscode.window.showErrorMessage('G7 works on files: save the chart first.');
     return undefined;
   }
-  // What is run is what is on the screen.
+  // The text on the screen is the one that is run.
   const open = vscode.workspace.textDocuments.find((d) => d.uri.toString() === at.toString());
   if (open?.isDirty && !(await open.save())) return undefined;
   return at.fsPath;
