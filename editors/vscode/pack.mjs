@@ -6,6 +6,7 @@ import { readFileSync, readdirSync, statSync, writeFileSync } from 'node:fs';
 import { join, relative, sep } from 'node:path';
 import { fileURLToPath } from 'node:url';
 import { crc32, deflateRawSync } from 'node:zlib';
+import { notices } from './notices.mjs';
 
 const here = fileURLToPath(new URL('.', import.meta.url));
 const about = JSON.parse(readFileSync(join(here, 'package.json'), 'utf8'));
@@ -71,6 +72,7 @@ function entries() {
   });
   const licences = ['LICENSE-MIT', 'LICENSE-APACHE'].map((name) => readFileSync(join(here, '../..', name), 'utf8'));
   all.push(['extension/LICENSE.txt', Buffer.from(licences.join('\n\n'))]);
+  all.push(['extension/NOTICES.txt', Buffer.from(notices(here))]);
   return [['extension.vsixmanifest', Buffer.from(manifest())], ['[Content_Types].xml', Buffer.from(types())], ...all];
 }
 

@@ -87,9 +87,9 @@ pub(super) fn syntax(words: &Vocabulary) -> String {
         "syntax match g7Clause /\\%(\\S\\s\\+\\)\\@40<=\\<\\%({}\\)\\>{no_name}/\n",
         any(&words.clauses)
     ));
-    out.push_str(&format!(
-        "syntax match g7Clause /\\%(\\%(pre\\|post\\|each\\)\\s\\+\\)\\@20<=\\%(st\\|il\\|ld\\|scan\\)\\>/\n"
-    ));
+    out.push_str(
+        "syntax match g7Clause /\\%(\\%(pre\\|post\\|each\\)\\s\\+\\)\\@20<=\\%(st\\|il\\|ld\\|scan\\)\\>/\n",
+    );
     out.push_str(&format!(
         "syntax match g7Qualifier /\\<\\%({}\\)\\>\\ze\\s\\+[A-Za-z0-9_`%({{]/\n",
         any(&words.qualifiers)
