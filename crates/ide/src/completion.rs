@@ -337,7 +337,7 @@ fn types() -> Vec<Choice> {
 
 fn functions() -> Vec<Choice> {
     let edges = words::VALUE.iter().filter(|w| !w.capitals).map(|w| (w.text, w.does[0]));
-    let standard = StandardFunction::ALL.into_iter().map(|f| (f.row().name, f.row().does));
+    let standard = StandardFunction::ALL.into_iter().map(|f| (f.row().name, f.row().does[0]));
     let one = |(name, does): (&str, &str)| choice(name, "function", does, &format!("{name}("));
     edges.chain(standard).map(one).collect()
 }

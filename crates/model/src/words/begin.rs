@@ -103,7 +103,14 @@ pub const CHART: &[Word] = &[
         ],
     )
     .then(" step"),
-    Word::reserved("macro", ["a macro-step", "une macro-étape", "uma macroetapa"]),
+    Word::reserved(
+        "macro",
+        [
+            "a macro-step; its expansion is a `macrochart`",
+            "une macro-étape ; son expansion est un `macrochart`",
+            "uma macroetapa; a sua expansão é um `macrochart`",
+        ],
+    ),
     Word::reserved("enclosing", ["an enclosing step", "une étape encapsulante", "uma etapa encapsulante"])
         .then(" step"),
     Word::free(
@@ -187,7 +194,14 @@ pub const ACTION: &[Word] = &[
         ],
     )
     .then(" scan:"),
-    Word::free("force", ["a forcing order", "un ordre de forçage", "uma ordem de forçagem"]),
+    Word::free(
+        "force",
+        [
+            "a forcing order: holds a chart in a situation",
+            "un ordre de forçage : maintient un grafcet dans une situation",
+            "uma ordem de forçagem: mantém um grafcet numa situação",
+        ],
+    ),
     Word::free(
         "enclose",
         [
@@ -196,8 +210,22 @@ pub const ACTION: &[Word] = &[
             "um grafcet dentro desta etapa encapsulante",
         ],
     ),
-    Word::free("call", ["a task runs", "une tâche s’exécute", "uma tarefa é executada"]),
-    Word::free("enable", ["lets a chart evolve", "laisse évoluer un grafcet", "deixa evoluir um grafcet"]),
+    Word::free(
+        "call",
+        [
+            "a task runs; the step waits for its exit step",
+            "une tâche s’exécute ; l’étape attend sa sortie",
+            "uma tarefa é executada; a etapa espera pela saída",
+        ],
+    ),
+    Word::free(
+        "enable",
+        [
+            "a chart evolves only while a step enables it",
+            "un grafcet n’évolue que si une étape le permet",
+            "um grafcet só evolui enquanto uma etapa o permite",
+        ],
+    ),
     Word::free(
         "mask",
         [

@@ -4,7 +4,14 @@ use super::row::Word;
 
 /// Words that go on with an item within its line. Where they are not reserved they are names elsewhere.
 pub const CLAUSES: &[Word] = &[
-    Word::reserved("when", ["the receptivity follows", "la réceptivité suit", "segue-se a receptividade"]),
+    Word::reserved(
+        "when",
+        [
+            "the receptivity: the transition clears if it is enabled and this is true",
+            "la réceptivité : la transition est franchie si elle est validée et que ceci est vrai",
+            "a receptividade: a transição é transposta se está validada e isto é verdade",
+        ],
+    ),
     Word::reserved(
         "priority",
         [
@@ -41,11 +48,7 @@ pub const CLAUSES: &[Word] = &[
     ),
     Word::free(
         "inverted",
-        [
-            "true where the signal is off",
-            "vraie quand le signal est absent",
-            "verdadeira quando o sinal está desligado",
-        ],
+        ["the channel carries the complement", "le canal porte le complément", "o canal leva o complemento"],
     ),
     Word::free(
         "safe",

@@ -42,6 +42,13 @@ pub fn texts(list: &'static [Word]) -> Vec<&'static str> {
     texts
 }
 
+/// The rows of a word at all kinds of places, members aside; a word of IEC 61131-3 may stand in capitals.
+pub fn rows(word: &str) -> impl Iterator<Item = &'static Word> {
+    let lists = PLACES.into_iter().filter(|(place, _)| !matches!(*place, "step" | "part"));
+    let all = lists.flat_map(|(_, list)| list.iter());
+    all.filter(move |w| w.text == word || w.capitals && w.text.to_ascii_uppercase() == word)
+}
+
 /// True if the word is in the list.
 pub fn has(list: &[Word], word: &str) -> bool {
     list.iter().any(|w| w.text == word)
@@ -69,7 +76,7 @@ pub fn reserved() -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::{PLACES, reserved};
+    use super::{PLACES, reserved, rows};
 
     #[test]
     fn a_word_is_reserved_everywhere_or_nowhere_and_is_told_in_three_languages() {
@@ -80,7 +87,7 @@ mod tests {
                 assert_eq!(word.reserved, reserved.iter().any(|r| r == text), "{place}: {text}");
                 for told in word.does {
                     let ends = told.ends_with(['.', ' ']) || told.starts_with(' ') || told.len() < 4;
-                    assert!(!ends && told.len() < 90, "{place}: {text}: {told}");
+                    assert!(!ends && told.chars().count() < 90, "{place}: {text}: {told}");
                 }
             }
         }
@@ -95,5 +102,14 @@ mod tests {
             phrases.dedup();
             assert_eq!(phrases.len(), all, "{place}");
         }
+    }
+
+    #[test]
+    fn a_word_has_a_row_for_each_of_its_places() {
+        let told = |word: &str| rows(word).map(|w| w.does[0]).collect::<Vec<_>>();
+        assert_eq!(told("force"), ["a forcing order: holds a chart in a situation", "holds a value"]);
+        assert_eq!(told("END_IF"), told("end_if"));
+        assert_eq!(told("WHEN"), [""; 0]);
+        assert_eq!(told("X"), [""; 0]);
     }
 }

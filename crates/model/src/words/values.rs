@@ -51,24 +51,48 @@ pub const fn of_qualifier(q: Qualifier) -> Told {
         Qualifier::N => {
             ["while the step is active", "tant que l’étape est active", "enquanto a etapa está ativa"]
         }
-        Qualifier::S => {
-            ["set, until a reset", "mise à 1, jusqu’à une remise à 0", "posta a 1, até ser reposta a 0"]
-        }
-        Qualifier::R => ["reset", "remise à 0", "reposta a 0"],
-        Qualifier::L => ["limited in time", "limitée dans le temps", "limitada no tempo"],
-        Qualifier::D => ["delayed", "retardée", "atrasada"],
-        Qualifier::P => ["for one scan", "pendant un cycle", "durante um ciclo"],
-        Qualifier::P0 => ["once at deactivation", "une fois à la désactivation", "uma vez na desativação"],
-        Qualifier::P1 => ["once at activation", "une fois à l’activation", "uma vez na ativação"],
-        Qualifier::SD => [
-            "set, delayed, even if the step is left",
-            "mémorisée et retardée, même si l’étape est quittée",
-            "memorizada e atrasada, mesmo que a etapa acabe",
+        Qualifier::S => [
+            "set, and stays so until a reset",
+            "mise à 1, et le reste jusqu’à une remise à 0",
+            "posta a 1, e assim fica até ser reposta a 0",
         ],
-        Qualifier::DS => ["delayed, then set", "retardée, puis mémorisée", "atrasada, depois memorizada"],
-        Qualifier::SL => {
-            ["set, limited in time", "mémorisée, limitée dans le temps", "memorizada, limitada no tempo"]
-        }
+        Qualifier::R => [
+            "reset; goes before everything that sets",
+            "remise à 0 ; passe avant tout ce qui met à 1",
+            "reposta a 0; vai antes de tudo o que põe a 1",
+        ],
+        Qualifier::L => [
+            "while the step is active, for the time at most",
+            "tant que l’étape est active, au plus pendant ce temps",
+            "enquanto a etapa está ativa, no máximo esse tempo",
+        ],
+        Qualifier::D => [
+            "while the step is active, once the time has passed",
+            "tant que l’étape est active, passé ce temps",
+            "enquanto a etapa está ativa, passado esse tempo",
+        ],
+        Qualifier::P => [
+            "for one scan after activation",
+            "pendant un cycle après l’activation",
+            "durante um ciclo após a ativação",
+        ],
+        Qualifier::P0 => ["once, at deactivation", "une fois, à la désactivation", "uma vez, na desativação"],
+        Qualifier::P1 => ["once, at activation", "une fois, à l’activation", "uma vez, na ativação"],
+        Qualifier::SD => [
+            "set once the time has passed, even if the step is left",
+            "mise à 1 passé ce temps, même si l’étape est quittée",
+            "posta a 1 passado esse tempo, mesmo que a etapa acabe",
+        ],
+        Qualifier::DS => [
+            "set once the step was active for the time",
+            "mise à 1 quand l’étape fut active ce temps",
+            "posta a 1 quando a etapa esteve ativa esse tempo",
+        ],
+        Qualifier::SL => [
+            "set at activation, for the time",
+            "mise à 1 à l’activation, pendant ce temps",
+            "posta a 1 na ativação, durante esse tempo",
+        ],
     }
 }
 
