@@ -4,7 +4,7 @@
 import { type ChildProcess, spawn } from 'node:child_process';
 import * as path from 'node:path';
 import * as vscode from 'vscode';
-import { addressIn, pageOf, serveLine } from './lines';
+import { addressIn, isHere, pageOf, serveLine } from './lines';
 
 /** How long a server may take to print its address, in milliseconds. */
 const PATIENCE = 20_000;
@@ -38,28 +38,26 @@ export class Drawings implements vscode.Disposable {
       { enableScripts: true, retainContextWhenHidden: true },
     );
     this.panels.set(file, panel);
-    const server = this.serve(folder);
+    panel.webview.html = page('', 'The page is being started …');
+    const editor = await editorAddress();
+    const server = this.serve(folder, editor);
     server.panels.add(panel);
     panel.onDidDispose(() => {
       this.panels.delete(file);
       server.panels.delete(panel);
       if (server.panels.size === 0) this.end(server);
     });
-    panel.webview.html = page('', 'The page is being started …');
     try {
-      const address = await server.address;
-      // In a window on another machine, VS Code passes the port on.
-      const there = await vscode.env.asExternalUri(vscode.Uri.parse(pageOf(address, folder, file)));
-      panel.webview.html = page(there.toString(true), '');
+      panel.webview.html = page(await seenAt(new URL(pageOf(await server.address, folder, file)), editor), '');
     } catch (e) {
       panel.webview.html = page('', e instanceof Error ? e.message : String(e));
     }
   }
 
-  private serve(folder: string): Server {
+  private serve(folder: string, editor: string): Server {
     const running = this.servers.get(folder);
     if (running !== undefined) return running;
-    const process = spawn(this.program(), serveLine(folder), { stdio: ['ignore', 'pipe', 'pipe'] });
+    const process = spawn(this.program(), serveLine(folder, editor), { stdio: ['ignore', 'pipe', 'pipe'] });
     const server: Server = { folder, process, address: this.addressOf(process), panels: new Set() };
     process.on('exit', () => {
       if (this.servers.get(folder) === server) this.servers.delete(folder);
@@ -103,6 +101,22 @@ export class Drawings implements vscode.Disposable {
     for (const panel of [...this.panels.values()]) panel.dispose();
     for (const server of [...this.servers.values()]) this.end(server);
   }
+}
+
+/** The address of a VS Code that is itself a page of this machine; empty on a desktop. */
+async function editorAddress(): Promise<string> {
+  if (vscode.env.uiKind !== vscode.UIKind.Web) return '';
+  const outside = new URL((await vscode.env.asExternalUri(vscode.Uri.parse('http://127.0.0.1:1/'))).toString(true));
+  return isHere(outside) ? outside.origin : '';
+}
+
+/** The address under which this window reaches a page of the server, which answers under its own name alone. */
+async function seenAt(page: URL, editor: string): Promise<string> {
+  if (editor !== '') return page.toString();
+  // Where the folder is on another machine, VS Code passes the port on.
+  const outside = new URL((await vscode.env.asExternalUri(vscode.Uri.parse(page.toString()))).toString(true));
+  if (isHere(outside) && outside.port === page.port) return outside.toString();
+  throw new Error(`The page is at ${outside.origin} in this window, where its server does not answer. Forward port ${page.port} to the same port of your machine.`);
 }
 
 function escaped(text: string): string {

@@ -1,7 +1,9 @@
 // The extension: it starts `g7 lsp`, and carries out the commands that the server offers above charts and
 // tests. It knows nothing of charts itself.
 
+import { execFile } from 'node:child_process';
 import * as path from 'node:path';
+import { promisify } from 'node:util';
 import * as vscode from 'vscode';
 import { LanguageClient, type LanguageClientOptions, type ServerOptions } from 'vscode-languageclient/node';
 import { Drawings } from './drawings';
@@ -16,6 +18,11 @@ export function program(): string {
   return set.startsWith('.') && root !== undefined ? path.resolve(root, set) : set;
 }
 
+/** Asks the program for its version, so that a program that is missing is told once, with the way out. */
+async function starts(): Promise<void> {
+  await promisify(execFile)(program(), ['--version']);
+}
+
 async function startClient(): Promise<void> {
   const server: ServerOptions = { command: program(), args: ['lsp'] };
   const options: LanguageClientOptions = {
@@ -24,14 +31,15 @@ async function startClient(): Promise<void> {
       { scheme: 'untitled', language: 'g7' },
     ],
   };
-  client = new LanguageClient('g7', 'G7', server, options);
   try {
+    await starts();
+    client = new LanguageClient('g7', 'G7', server, options);
     await client.start();
   } catch (e) {
     client = undefined;
     const settings = 'Open Settings';
     const chosen = await vscode.window.showErrorMessage(
-      `\`${program()} lsp\` cannot be started: ${e instanceof Error ? e.message : String(e)}. Install G7, or set the path of the program.`,
+      `\`${program()} lsp\` cannot be started: ${e instanceof Error ? e.message : String(e)}. Install G7, or set its path.`,
       settings,
     );
     if (chosen === settings) await vscode.commands.executeCommand('workbench.action.openSettings', 'g7.path');

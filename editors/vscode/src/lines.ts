@@ -14,9 +14,14 @@ export function lineOf(work: Work, file: string, name: string): { title: string;
   return { title: `${work} ${what}`, args };
 }
 
-/** The arguments of the server whose page is shown in a panel. */
-export function serveLine(folder: string): string[] {
-  return ['serve', folder, '--no-open', '--framed'];
+/** The arguments of the server whose page is shown in a panel; the address is that of a VS Code in the browser. */
+export function serveLine(folder: string, editor: string): string[] {
+  return ['serve', folder, '--no-open', editor === '' ? '--framed' : `--framed=${editor}`];
+}
+
+/** True for an address of this machine. */
+export function isHere(address: URL): boolean {
+  return ['127.0.0.1', 'localhost', '[::1]'].includes(address.hostname);
 }
 
 /** The address that the server has printed, if it is one of this machine. */

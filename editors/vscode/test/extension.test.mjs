@@ -20,7 +20,6 @@ class LanguageClient {
     clients.push(this);
   }
   async start() {
-    if (this.server.command === 'missing') throw new Error('not found');
     this.state = 'started';
   }
   async stop() {
@@ -45,6 +44,24 @@ function load() {
   return require(out);
 }
 
+/** A program in place of g7 that prints an address like `g7 serve`, and notes how it was called and ended. */
+const log = join(scratch, 'log');
+const program = join(scratch, 'fake-g7');
+writeFileSync(
+  program,
+  `#!/usr/bin/env node
+const { appendFileSync } = require('node:fs');
+if (process.argv[2] === '--version') process.exit(0);
+appendFileSync(${JSON.stringify(log)}, JSON.stringify(process.argv.slice(2)) + '\\n');
+process.on('SIGINT', () => { appendFileSync(${JSON.stringify(log)}, 'ended\\n'); process.exit(0); });
+console.log('http://127.0.0.1:47123/?token=abc');
+setInterval(() => {}, 1000);
+`,
+);
+chmodSync(program, 0o755);
+settings.path = program;
+const logged = () => (existsSync(log) ? readFileSync(log, 'utf8').trim().split('\n') : []);
+
 const extension = load();
 const context = { subscriptions: [] };
 const chart = join(scratch, 'a tank.g7');
@@ -61,7 +78,7 @@ async function until(holds, what) {
 test('the language server is started for files and for new texts', async () => {
   await extension.activate(context);
   assert.equal(clients.length, 1);
-  assert.deepEqual(clients[0].server, { command: 'g7', args: ['lsp'] });
+  assert.deepEqual(clients[0].server, { command: program, args: ['lsp'] });
   assert.deepEqual(clients[0].options.documentSelector.map((s) => s.scheme), ['file', 'untitled']);
   assert.equal(clients[0].state, 'started');
 });
@@ -78,7 +95,7 @@ test('a lens above a test runs that test, by its title', async () => {
   await commands.get('g7.test')(uri, 'stops after "five" bottles');
   const [[what, task]] = did;
   assert.equal(what, 'task');
-  assert.equal(task.execution.process, 'g7');
+  assert.equal(task.execution.process, program);
   assert.deepEqual(task.execution.args, ['test', chart, '--filter', 'stops after "five" bottles']);
   assert.equal(task.execution.options.cwd, scratch);
 });
@@ -105,36 +122,17 @@ test('a text that is no file is refused in words', async () => {
 
 test('a program that is missing is told, with the way to the setting', async () => {
   did.length = 0;
-  settings.path = 'missing';
+  settings.path = join(scratch, 'missing');
   await commands.get('g7.restart')();
   assert.equal(clients[0].state, 'stopped');
-  assert.match(did[0][1], /`missing lsp` cannot be started/);
-  settings.path = 'g7';
+  assert.match(did[0][1], /missing lsp` cannot be started/);
+  assert.equal(clients.length, 1);
+  settings.path = program;
   await commands.get('g7.restart')();
   assert.equal(clients.at(-1).state, 'started');
 });
 
-/** A program in place of g7 that prints an address like `g7 serve`, and notes how it was called and ended. */
-function fake() {
-  const file = join(scratch, 'fake-g7');
-  const log = join(scratch, 'log');
-  writeFileSync(
-    file,
-    `#!/usr/bin/env node
-const { appendFileSync } = require('node:fs');
-appendFileSync(${JSON.stringify(log)}, JSON.stringify(process.argv.slice(2)) + '\\n');
-process.on('SIGINT', () => { appendFileSync(${JSON.stringify(log)}, 'ended\\n'); process.exit(0); });
-console.log('http://127.0.0.1:47123/?token=abc');
-setInterval(() => {}, 1000);
-`,
-  );
-  chmodSync(file, 0o755);
-  return { file, log: () => (existsSync(log) ? readFileSync(log, 'utf8').trim().split('\n') : []) };
-}
-
 test('the drawing: one server for a folder, one panel for a file, and an end with the last panel', async () => {
-  const { file, log } = fake();
-  settings.path = file;
   did.length = 0;
   const other = join(scratch, 'b.g7');
   writeFileSync(other, '');
@@ -144,14 +142,33 @@ test('the drawing: one server for a folder, one panel for a file, and an end wit
   const panels = did.filter(([what]) => what === 'panel').map(([, panel]) => panel);
   assert.equal(panels.length, 2);
   assert.deepEqual(did.at(-1), ['reveal', 'a tank.g7']);
-  assert.deepEqual(log().map((l) => JSON.parse(l)), [['serve', scratch, '--no-open', '--framed']]);
+  assert.deepEqual(logged().map((l) => JSON.parse(l)), [['serve', scratch, '--no-open', '--framed']]);
   const html = panels[0].webview.html;
   assert.match(html, /<iframe src="http:\/\/127\.0\.0\.1:47123\/\?token=abc&#38;file=a\+tank\.g7"/);
   assert.match(html, /frame-src http:\/\/127\.0\.0\.1:47123;/);
   panels[0].dispose();
   panels[1].dispose();
-  await until(() => log().at(-1) === 'ended', 'the server goes on without a panel');
-  settings.path = 'g7';
+  await until(() => logged().at(-1) === 'ended', 'the server goes on without a panel');
+  settings.path = program;
+});
+
+test('in a browser on this machine the page is shown under its own address, and VS Code is named to its server', async () => {
+  did.length = 0;
+  vscode.env.uiKind = vscode.UIKind.Web;
+  const outside = vscode.env.asExternalUri;
+  vscode.env.asExternalUri = async (uri) => vscode.Uri.parse(`http://127.0.0.1:8080/proxy/${new URL(uri.toString()).port}/`);
+  await commands.get('g7.draw')(vscode.Uri.file(chart));
+  const panel = did.find(([what]) => what === 'panel')[1];
+  assert.match(panel.webview.html, /iframe src="http:\/\/127\.0\.0\.1:47123\//);
+  assert.equal(JSON.parse(logged().at(-1)).at(-1), '--framed=http://127.0.0.1:8080');
+  panel.dispose();
+  // A proxy gives the page a name that its server does not answer to.
+  vscode.env.uiKind = vscode.UIKind.Desktop;
+  await commands.get('g7.draw')(vscode.Uri.file(chart));
+  const other = did.filter(([what]) => what === 'panel').at(-1)[1];
+  assert.match(other.webview.html, /Forward port 47123/);
+  other.dispose();
+  vscode.env.asExternalUri = outside;
 });
 
 test('a server that does not start is told in the panel', async () => {
@@ -162,7 +179,7 @@ test('a server that does not start is told in the panel', async () => {
   assert.match(panel.webview.html, /cannot be started/);
   assert.doesNotMatch(panel.webview.html, /iframe src/);
   panel.dispose();
-  settings.path = 'g7';
+  settings.path = program;
 });
 
 test('the real program serves a page that a panel may show', { skip: process.env.G7 === undefined }, async () => {
@@ -177,7 +194,7 @@ test('the real program serves a page that a panel may show', { skip: process.env
   assert.equal(answer.headers.get('x-frame-options'), null);
   assert.match(answer.headers.get('content-security-policy'), /frame-ancestors [^;]*vscode-webview:/);
   panel.dispose();
-  settings.path = 'g7';
+  settings.path = program;
 });
 
 /** The files of a zip, by its directory; each is held to its sum. */

@@ -47,8 +47,8 @@ pub(super) struct Guard {
     pub(super) certificate: Option<Arc<Certificate>>,
     pub(super) audit: Audit,
     pub(super) foreign: Foreign,
-    /// Editors on this machine may show the page in a frame.
-    pub(super) framed: bool,
+    /// The pages that may show this one in a frame, as the policy names them; none may if it is missing.
+    pub(super) framed: Option<String>,
 }
 
 /// Requests that other sites cause: a bounded number of rows a minute from an address, the others as a count.
@@ -88,9 +88,6 @@ fn needed(method: &Method, path: &str) -> Option<Role> {
 const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; \
     style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; object-src 'none'; \
     base-uri 'none'; form-action 'none'";
-/// The pages that VS Code puts round a panel, on a desktop and in a browser; no site can have such an address.
-const EDITORS: &str = "'self' vscode-webview: vscode-file: https://*.vscode-cdn.net";
-
 const HEADERS: [(HeaderName, &str); 5] = [
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
     // The address contains the token, so it must not be sent to other sites.
@@ -116,7 +113,7 @@ pub(super) async fn guard(State(guard): State<Guard>, mut request: Request, next
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
     }
-    if !guard.framed {
+    if guard.framed.is_none() {
         headers.insert(header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY"));
     }
     if let Ok(policy) = HeaderValue::from_str(&guard.policy()) {
@@ -226,7 +223,7 @@ impl Guard {
     /// it is named.
     fn policy(&self) -> String {
         let port = self.bound.port();
-        let frames = if self.framed { EDITORS } else { "'none'" };
+        let frames = self.framed.as_deref().unwrap_or("'none'");
         let policy = format!("{POLICY}; frame-ancestors {frames}");
         if self.certificate.is_some() {
             return format!("{policy}; connect-src 'self' wss://*:{port}");
@@ -296,7 +293,7 @@ mod tests {
             certificate: None,
             audit: Audit::default(),
             foreign: Foreign::default(),
-            framed: false,
+            framed: None,
         }
     }
 

@@ -58,7 +58,8 @@ const vscode = {
   TaskRevealKind: { Always: 1 },
   TaskPanelKind: { Dedicated: 2 },
   ViewColumn: { Beside: -2 },
-  env: { asExternalUri: async (uri) => uri },
+  UIKind: { Desktop: 1, Web: 2 },
+  env: { uiKind: 1, asExternalUri: async (uri) => uri },
   workspace: {
     getConfiguration: () => ({ get: (name) => settings[name] }),
     workspaceFolders: undefined,
