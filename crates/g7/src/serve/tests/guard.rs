@@ -137,7 +137,7 @@ async fn only_editors_may_frame_the_page_and_only_where_the_server_was_asked_to_
     // An address cannot bring rules of its own.
     for wrong in ["*", "https:", "http://", "http://a; script-src *", "http://a/path", "http://a b"] {
         let args = Serve { framed: Some(wrong.to_owned()), ..args_of(Path::new(".")) };
-        assert!(Rules::of(&args, None, &Audit::default(), None).is_err(), "{wrong}");
+        assert!(Rules::of(&args, None, &crate::audit::Audit::default(), None).is_err(), "{wrong}");
     }
 }
 
