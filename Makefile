@@ -127,7 +127,7 @@ zed: tree-sitter
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, a bare target, the model checkers ABC, Spin and rIC3
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, Vim, Neovim, tree-sitter, a bare target, the model checkers ABC, Spin and rIC3
 peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
@@ -143,15 +143,14 @@ peers: checkers
 		$(SUDO) apt-get install -qq --no-install-recommends arduino-core-avr; }
 	@$(call debian,cmake,cmake)
 	@$(call debian,nvim,neovim)
+	@$(call debian,vim,vim)
+	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10 || \
+		echo "tree-sitter cannot be installed: its test is skipped"
 	@cargo run --quiet --package g7 -- gen rust examples/bottle-conveyor --project cargo --force -o $(CORTEX) && \
 		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*' 'fmpy==0.3.*' 'pyecore==0.15.*'
 	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
-
-	@command -v vim >/dev/null || { $(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends vim; }
-	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10 || \
-		echo "tree-sitter cannot be installed: its test is skipped"
 
 # rIC3 is GPL: it is asked, never linked. Its libraries use parts of the language that are not stable yet.
 checkers:
