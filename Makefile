@@ -31,7 +31,11 @@ PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 NODE := $(PYTHON)/node
 PAGE := $(shell find web/src web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
-.PHONY: run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
+# The extension for VS Code; its packages are pinned by its lock.
+EXTENSION := editors/vscode
+EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
+
+.PHONY: grammars vscode tree-sitter zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -70,7 +74,7 @@ static: web
 test: export G7_SKIPS = $(TALLY)/skips
 test: export G7_PEERS = $(PYTHON)
 test: WASM := quick-wasm
-test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.package-lock.json
+test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.package-lock.json $(EXTENDED)
 	cargo fmt --all --check
 	@$(call debian,chromium,chromium)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: its tests are skipped"
@@ -79,6 +83,9 @@ test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.pack
 	@{ nice $(CLIPPY) && nice $(TESTS) --no-run; } >$(TALLY)/compiled 2>&1 & compiled=$$!; \
 		told=0; { $(STORIES); } || told=$$?; wait $$compiled || { cat $(TALLY)/compiled; exit 1; }; exit $$told
 	{ $(TESTS) && cargo test --quiet --doc --package g7-engine; } 2>&1 | tee $(TALLY)/crates.log
+	@test -f $(EXTENDED) || printf 'packages of the extension missing\teditors/vscode\n' >>$(G7_SKIPS)
+	@test ! -f $(EXTENDED) || { cd $(EXTENSION) && npm run --silent check && npm run --silent build && \
+		G7=$(DEBUG)/g7 npm run --silent test | tee $(TALLY)/vscode.log; }
 	$(DEBUG)/g7 check examples
 	$(DEBUG)/g7 test examples | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
@@ -96,10 +103,31 @@ $(NODE)/node_modules/.package-lock.json: tests/peers/node/package-lock.json
 	@cd $(NODE) && npm ci --silent --no-audit --no-fund && touch node_modules/.package-lock.json || \
 		echo "mqtt and sparkplug-payload cannot be installed: their tests are skipped"
 
+$(EXTENDED): $(EXTENSION)/package-lock.json
+	@cd $(EXTENSION) && npm ci --silent --no-audit --no-fund --ignore-scripts && touch node_modules/.package-lock.json || \
+		echo "the packages of the extension for VS Code cannot be installed: its tests are skipped"
+
+## the grammars of other editors anew, from the table of words
+grammars:
+	cargo run --quiet --package g7-tests --bin grammars
+
+## the extension for VS Code as a file that `code --install-extension` takes
+vscode: $(EXTENDED)
+	@cd $(EXTENSION) && npm run --silent package
+
+## the parser of tree-sitter from its grammar, for Neovim, Helix and Zed
+tree-sitter:
+	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10
+	cd editors/tree-sitter-g7 && tree-sitter generate
+
+## the extension for Zed in target/zed, with a repository for its grammar
+zed: tree-sitter
+	editors/zed/pack.sh $(abspath $(or $(CARGO_TARGET_DIR),target))/zed
+
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, a bare target, the model checkers ABC, Spin and rIC3
+## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, Vim, Neovim, tree-sitter, a bare target, the model checkers ABC, Spin and rIC3
 peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
@@ -115,6 +143,9 @@ peers: checkers
 		$(SUDO) apt-get install -qq --no-install-recommends arduino-core-avr; }
 	@$(call debian,cmake,cmake)
 	@$(call debian,nvim,neovim)
+	@$(call debian,vim,vim)
+	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10 || \
+		echo "tree-sitter cannot be installed: its test is skipped"
 	@cargo run --quiet --package g7 -- gen rust examples/bottle-conveyor --project cargo --force -o $(CORTEX) && \
 		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)

@@ -34,7 +34,7 @@ fn no_form() -> String {
 /// True if a file begins with no word of a .g7 file, and has errors as one.
 fn is_of_no_form(source: &Source) -> bool {
     let first = first_word(source.text.trim_start_matches('\u{feff}'));
-    source.format.is_none() && source.has_errors() && !words::FILE.contains(&first)
+    source.format.is_none() && source.has_errors() && !words::has(words::FILE, first)
 }
 
 /// The first word behind blanks and notes; empty if something else stands there.

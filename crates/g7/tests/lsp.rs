@@ -335,3 +335,50 @@ fn neovim_shows_a_problem_while_its_line_is_typed() {
     let errors = String::from_utf8_lossy(&ran.stderr);
     assert_eq!(said, "typed: G0202 8:14\nundone: \n", "{errors}");
 }
+
+/// The files of `editors/vim` as a plugin: they find the type of the file and start the server by themselves.
+const PLUGIN: &str = r#"
+vim.opt.runtimepath:prepend(vim.env.VIM_FILES)
+vim.g.g7_program = vim.env.G7
+vim.cmd('filetype plugin on')
+vim.cmd('syntax on')
+vim.cmd('edit chart.g7')
+local function attached() return vim.lsp.buf_get_clients(0) end
+vim.wait(20000, function()
+  for _, client in pairs(attached()) do
+    if client.initialized then return true end
+  end
+  return false
+end)
+vim.api.nvim_win_set_cursor(0, { 9, 14 })
+vim.api.nvim_feedkeys('cwgone', 'x', false)
+vim.wait(20000, function() return #vim.diagnostic.get(0) > 0 end)
+local names = {}
+for _, client in pairs(attached()) do table.insert(names, client.name) end
+io.stdout:write(vim.bo.filetype .. ' ' .. vim.b.current_syntax .. ' ' .. table.concat(names, ' ') .. '\n')
+io.stdout:write(#vim.diagnostic.get(0) .. ' problem\n')
+io.stdout:write(tostring(vim.lsp.commands['g7.test'] ~= nil) .. '\n')
+vim.cmd('qall!')
+"#;
+
+#[test]
+fn the_files_for_vim_start_the_server_in_neovim() {
+    if !g7_peers::tool("nvim") {
+        return;
+    }
+    let folder = common::Folder::with(TEXT);
+    folder.write("try.lua", PLUGIN);
+    let files = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../editors/vim");
+    let ran = Command::new("nvim")
+        .args(["--headless", "-u", "NONE", "-i", "NONE", "-n", "-c", "luafile try.lua"])
+        .current_dir(folder.path(""))
+        .env("G7", cargo_bin!("g7"))
+        .env("VIM_FILES", files)
+        .env("HOME", folder.path(""))
+        .stdin(Stdio::null())
+        .output()
+        .expect("nvim runs");
+    let said = String::from_utf8_lossy(&ran.stdout).replace('\r', "");
+    let errors = String::from_utf8_lossy(&ran.stderr);
+    assert_eq!(said, "g7 g7 g7\n1 problem\ntrue\n", "{errors}");
+}

@@ -1,5 +1,6 @@
 //! Completion: the words that are possible at a place of the text.
 
+use g7_model::words::{self, Told, Word};
 use g7_model::{Document, ProfileName, Qualifier, StandardFunction, Type};
 use g7_syntax::{Token, TokenKind};
 
@@ -42,68 +43,6 @@ enum Around {
     Body,
 }
 
-const FILE: &[(&str, &str)] = &[
-    ("input", "a value from the plant"),
-    ("output", "a value for the plant"),
-    ("var", "an internal variable"),
-    ("const", "a constant"),
-    ("chart", "a partial chart"),
-    ("macrochart", "the expansion of a macro-step"),
-    ("task", "a chart that steps call"),
-    ("action", "a named action"),
-    ("function", "a function"),
-    ("plant", "a model of the process"),
-    ("test", "a scenario"),
-    ("profile", "the evolution rules"),
-    ("scan", "the nominal scan time"),
-    ("pre", "before each evolution"),
-    ("post", "after each evolution"),
-];
-const CHART: &[(&str, &str)] = &[
-    ("step", "a step"),
-    ("initial step", "a step of the initial situation"),
-    ("macro", "a macro-step"),
-    ("enclosing", "an enclosing step"),
-    ("entry step", "the first step of an expansion"),
-    ("exit step", "the last step of an expansion"),
-    ("var", "a variable of this chart"),
-    ("action", "a named action of this chart"),
-];
-const ACTIONS: &[(&str, &str)] = &[
-    ("on", "stored, at an event"),
-    ("each scan:", "in each scan while active"),
-    ("force", "a forcing order"),
-    ("enclose", "charts inside this step"),
-    ("call", "a task"),
-    ("enable", "lets a chart evolve"),
-    ("mask", "holds outputs back"),
-];
-const PLANT: &[(&str, &str)] = &[
-    ("state", "a state of the process"),
-    ("rate", "how a state moves"),
-    ("drive", "what an input reads"),
-    ("on", "once when a condition comes true"),
-    ("each", "in every tick"),
-    ("parts", "a queue or track"),
-    ("arrivals", "what arrives by itself"),
-    ("const", "a constant of the plant"),
-    ("view", "a picture"),
-];
-const TEST: &[(&str, &str)] = &[
-    ("set", "inputs take values"),
-    ("pulse", "an input is true for a moment"),
-    ("wait", "time passes"),
-    ("wait until", "until a condition holds"),
-    ("scan", "so many scans"),
-    ("expect", "this must hold now"),
-    ("expect fault", "a fault must come"),
-    ("always", "holds throughout"),
-    ("force", "holds a value"),
-    ("release", "lets go"),
-    ("restart", "starts anew"),
-    ("repeat", "again and again"),
-];
-
 /// The completion at a byte.
 pub fn complete(file: &File, at: usize) -> Completion {
     let text = file.text();
@@ -143,7 +82,7 @@ impl Place<'_> {
     }
 
     fn choices(&self) -> Vec<Choice> {
-        let Some(last) = self.before.last() else { return keywords(FILE) };
+        let Some(last) = self.before.last() else { return keywords(words::FILE) };
         let around = self.around();
         let word = self.word(last).to_owned();
         match (last.kind, word.as_str()) {
@@ -156,16 +95,17 @@ impl Place<'_> {
             (TokenKind::Colon, _) if self.declares() => types(),
             (TokenKind::Arrow, _) => self.steps(),
             (_, "profile") => {
-                ProfileName::ALL.iter().map(|p| choice(p.name(), "profile", "", p.name())).collect()
+                let one = |p: ProfileName| choice(p.name(), "profile", p.does()[0], p.name());
+                ProfileName::ALL.map(one).into()
             }
             (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout") => self.charts(),
             (_, "with") => self.others("plant"),
             _ if self.begins(last) => match around {
-                Around::File => keywords(FILE),
-                Around::Chart => [self.steps(), keywords(CHART)].concat(),
-                Around::Step => [qualifiers(), keywords(ACTIONS), self.values()].concat(),
-                Around::Plant => keywords(PLANT),
-                Around::Test => keywords(TEST),
+                Around::File => keywords(words::FILE),
+                Around::Chart => [self.steps(), keywords(words::CHART)].concat(),
+                Around::Step => [qualifiers(), keywords(words::ACTION), self.values()].concat(),
+                Around::Plant => keywords(words::PLANT),
+                Around::Test => keywords(words::TEST),
                 Around::Layout => self.steps(),
                 Around::Body => [self.values(), functions()].concat(),
             },
@@ -179,8 +119,8 @@ impl Place<'_> {
                 self.steps()
             }
             _ if around == Around::Chart && self.after("->") && !self.after("when") => {
-                [keywords(&[("when", "the receptivity"), ("priority", "1 goes first")]), self.steps()]
-                    .concat()
+                let behind = words::CLAUSES.iter().filter(|w| matches!(w.text, "when" | "priority"));
+                behind.map(|w| keyword(&w.phrase(), w.does)).chain(self.steps()).collect()
             }
             _ => [self.values(), functions()].concat(),
         }
@@ -278,17 +218,10 @@ impl Place<'_> {
                     }
                 }
                 Meaning::Step(..) if name == owner => {
-                    found.push(choice("X", "member", "active or not", "X"));
-                    found.push(choice("T", "member", "time since activation", "T"));
+                    found.extend(words::STEP.iter().map(member));
                 }
                 Meaning::Other("parts of the plant", _) if name == owner => {
-                    let members = [
-                        ("count", "how many"),
-                        ("empty", "none"),
-                        ("full", "no room"),
-                        ("lost", "fallen off"),
-                    ];
-                    found.extend(members.iter().map(|(m, d)| choice(m, "member", d, m)));
+                    found.extend(words::PART.iter().map(member));
                 }
                 Meaning::Variable(..) | Meaning::Step(..) | Meaning::Chart(_) | Meaning::Other(..) => {}
             }
@@ -296,7 +229,7 @@ impl Place<'_> {
         if owner.starts_with('X')
             && owner.get(1..2).is_some_and(|c| c.starts_with(|c: char| c.is_ascii_digit()))
         {
-            found.push(choice("T", "member", "time since activation", "T"));
+            found.extend(words::STEP.iter().filter(|w| w.text == "T").map(member));
         }
         found
     }
@@ -381,41 +314,36 @@ fn activity(step: &str, chart: &str) -> Choice {
     choice(&text, "step", &format!("step {step} of {chart} is active"), &text)
 }
 
-fn keywords(list: &[(&str, &str)]) -> Vec<Choice> {
-    list.iter().map(|(w, d)| choice(w, "keyword", d, &format!("{w} "))).collect()
+fn keywords(list: &[Word]) -> Vec<Choice> {
+    list.iter().map(|w| keyword(&w.phrase(), w.does)).collect()
+}
+
+fn keyword(word: &str, [does, ..]: Told) -> Choice {
+    choice(word, "keyword", does, &format!("{word} "))
 }
 
 /// The qualifiers, each with what it does.
 fn qualifiers() -> Vec<Choice> {
-    let does = |q: Qualifier| match q {
-        Qualifier::N => "while the step is active",
-        Qualifier::S => "set",
-        Qualifier::R => "reset",
-        Qualifier::L => "limited in time",
-        Qualifier::D => "delayed",
-        Qualifier::P => "for one scan",
-        Qualifier::P0 => "once at deactivation",
-        Qualifier::P1 => "once at activation",
-        Qualifier::SD => "set, delayed",
-        Qualifier::DS => "delayed, set",
-        Qualifier::SL => "set, limited",
-    };
-    let list: Vec<(&str, &str)> = Qualifier::ALL.map(|q| (q.name(), does(q))).into();
-    keywords(&list)
+    Qualifier::ALL.map(|q| keyword(q.name(), words::of_qualifier(q))).into()
 }
 
 /// The types: those used most stand first.
 fn types() -> Vec<Choice> {
     let often = [Type::Bool, Type::Int, Type::Real, Type::Time].map(Type::name);
+    let does = |name: &str| Type::named(name).map_or("", |ty| words::of_type(ty)[0]);
     let others = Type::names().filter(|name| !often.contains(name));
-    often.into_iter().chain(others).map(|t| choice(t, "type", "", t)).collect()
+    often.into_iter().chain(others).map(|t| choice(t, "type", does(t), t)).collect()
 }
 
 fn functions() -> Vec<Choice> {
-    let edges = [("rise", "rising edge, ↑"), ("fall", "falling edge, ↓")];
-    let standard = StandardFunction::ALL.into_iter().map(|f| (f.row().name, f.row().does));
+    let edges = words::VALUE.iter().filter(|w| !w.capitals).map(|w| (w.text, w.does[0]));
+    let standard = StandardFunction::ALL.into_iter().map(|f| (f.row().name, f.row().does[0]));
     let one = |(name, does): (&str, &str)| choice(name, "function", does, &format!("{name}("));
-    edges.into_iter().chain(standard).map(one).collect()
+    edges.chain(standard).map(one).collect()
+}
+
+fn member(word: &Word) -> Choice {
+    choice(word.text, "member", word.does[0], word.text)
 }
 
 fn choice(label: &str, kind: &'static str, detail: &str, insert: &str) -> Choice {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use g7_model::{Qualifier, StandardFunction};
+use g7_model::{Qualifier, StandardFunction, Type, words};
 
 use crate::file::File;
 use crate::names::{Meaning, Named, meaning, word_at};
@@ -71,47 +71,19 @@ fn describe(n: &Named<'_>) -> String {
     }
 }
 
-/// Explains the most frequent words of the language.
+/// Explains a word of the language.
 fn explain(word: &str) -> Option<String> {
     if let Some(qualifier) = Qualifier::named(word) {
-        return Some(explain_qualifier(qualifier).to_owned());
+        return Some(format!("**{word}**: {}", words::of_qualifier(qualifier)[0]));
     }
     let standard = StandardFunction::named(word).map(StandardFunction::row).filter(|row| row.name == word);
     if let Some(row) = standard {
-        return Some(format!("**{}**({}): {}", row.name, row.inputs.join(", "), row.does));
+        return Some(format!("**{}**({}): {}", row.name, row.inputs.join(", "), row.does[0]));
     }
-    explain_word(word).map(str::to_owned)
-}
-
-fn explain_word(word: &str) -> Option<&'static str> {
-    Some(match word {
-        "when" => "**when**: the receptivity; the transition clears when it is enabled and this is true",
-        "force" => "**force**: a forcing order: the chart is brought into this situation and held in it",
-        "enclose" => "**enclose**: the charts that are active inside this step",
-        "initial" => "**initial**: active in the initial situation",
-        "macro" => "**macro**: a macro-step; its expansion is a `macrochart`",
-        "call" => "**call**: the task runs while this step is active; it waits for its exit step",
-        "enable" => "**enable**: the chart evolves only while a step enables it",
-        "mask" => "**mask**: what the chart's actions ask for is held back",
-        "inverted" => "**inverted**: the channel carries the complement",
-        "retain" => "**retain**: keeps its value over a warm restart",
-        "safe" => "**safe**: the value of the output after a fault",
-        _ => return None,
-    })
-}
-
-fn explain_qualifier(qualifier: Qualifier) -> &'static str {
-    match qualifier {
-        Qualifier::N => "**N**: while the step is active",
-        Qualifier::S => "**S**: set, and stays so until a reset",
-        Qualifier::R => "**R**: reset; goes before everything that sets",
-        Qualifier::L => "**L**: while the step is active, for the time at most",
-        Qualifier::D => "**D**: while the step is active, once the time has passed",
-        Qualifier::P => "**P**: for one scan after activation",
-        Qualifier::P1 => "**P1**: once, at activation",
-        Qualifier::P0 => "**P0**: once, at deactivation",
-        Qualifier::SD => "**SD**: set at activation, acts once the time has passed, even if the step is left",
-        Qualifier::DS => "**DS**: set once the step was active for the time",
-        Qualifier::SL => "**SL**: set at activation, for the time",
+    if let Some(ty) = Type::named(word) {
+        return Some(format!("**{word}**: {}", words::of_type(ty)[0]));
     }
+    let mut told: Vec<&str> = words::rows(word).map(|w| w.does[0]).collect();
+    told.dedup();
+    (!told.is_empty()).then(|| format!("**{word}**: {}", told.join("; or ")))
 }

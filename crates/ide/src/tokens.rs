@@ -183,7 +183,7 @@ fn is_keyword(
     if dotted || named {
         return false;
     }
-    begins && words::begins(word) || !begins && !known && words::CONTINUATIONS.contains(&word)
+    begins && words::begins(word) || !begins && !known && words::goes_on(word)
 }
 
 /// `X12`, where there is a step 12.

@@ -1,5 +1,6 @@
 //! Documents, charts, steps and transitions.
 
+use crate::words::Told;
 use crate::{Action, Block, Body, Expr, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type};
 
 /// All of one file.
@@ -104,6 +105,25 @@ impl ProfileName {
             ProfileName::Pl7 => "pl7",
             ProfileName::Unity => "unity",
             ProfileName::Jgrafchart => "jgrafchart",
+        }
+    }
+
+    /// Its rules in a few words, in the languages of the table of words.
+    pub const fn does(self) -> Told {
+        match self {
+            ProfileName::Iec60848 => [
+                "GRAFCET, with a search for stability",
+                "GRAFCET, avec recherche de stabilité",
+                "GRAFCET, com procura de estabilidade",
+            ],
+            ProfileName::Iec61131 => ["SFC of IEC 61131-3", "SFC de la CEI 61131-3", "SFC da IEC 61131-3"],
+            ProfileName::Pl7 => {
+                ["PL7 on TSX Micro and Premium", "PL7 sur TSX Micro et Premium", "PL7 em TSX Micro e Premium"]
+            }
+            ProfileName::Unity => {
+                ["Unity Pro and Control Expert", "Unity Pro et Control Expert", "Unity Pro e Control Expert"]
+            }
+            ProfileName::Jgrafchart => ["JGrafchart", "JGrafchart", "JGrafchart"],
         }
     }
 }

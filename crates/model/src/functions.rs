@@ -3,6 +3,7 @@
 //! The resolver, readers of other files, the editor and the book read this table.
 
 use crate::BinaryOp;
+use crate::words::Told;
 
 /// A standard function (IEC 61131-3:2003, tables 23 to 30).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -82,8 +83,8 @@ pub struct FunctionRow {
     pub name: &'static str,
     /// The names of the inputs in their order; behind `…` the last one repeats.
     pub inputs: &'static [&'static str],
-    /// In a few words.
-    pub does: &'static str,
+    /// In a few words, in the languages of the table of words.
+    pub does: Told,
 }
 
 const ONE: &[&str] = &["IN"];
@@ -153,40 +154,138 @@ impl StandardFunction {
                 let (inputs, does) = of_operator(op);
                 (op.row().function, inputs, does)
             }
-            StandardFunction::Not => ("NOT", ONE, "complement"),
-            StandardFunction::Move => ("MOVE", ONE, "the value itself"),
-            StandardFunction::Abs => ("ABS", ONE, "absolute value"),
-            StandardFunction::Sqrt => ("SQRT", ONE, "square root"),
-            StandardFunction::Ln => ("LN", ONE, "natural logarithm"),
-            StandardFunction::Log => ("LOG", ONE, "logarithm to base 10"),
-            StandardFunction::Exp => ("EXP", ONE, "power of e"),
-            StandardFunction::Sin => ("SIN", ONE, "sine of radians"),
-            StandardFunction::Cos => ("COS", ONE, "cosine of radians"),
-            StandardFunction::Tan => ("TAN", ONE, "tangent of radians"),
-            StandardFunction::Asin => ("ASIN", ONE, "arc sine, radians"),
-            StandardFunction::Acos => ("ACOS", ONE, "arc cosine, radians"),
-            StandardFunction::Atan => ("ATAN", ONE, "arc tangent, radians"),
-            StandardFunction::Trunc => ("TRUNC", ONE, "whole part"),
-            StandardFunction::Shl => ("SHL", SHIFT, "bits moved to the left"),
-            StandardFunction::Shr => ("SHR", SHIFT, "bits moved to the right"),
-            StandardFunction::Rol => ("ROL", SHIFT, "bits moved to the left in a ring"),
-            StandardFunction::Ror => ("ROR", SHIFT, "bits moved to the right in a ring"),
-            StandardFunction::Min => ("MIN", MORE, "the least"),
-            StandardFunction::Max => ("MAX", MORE, "the greatest"),
-            StandardFunction::Limit => ("LIMIT", &["MN", "IN", "MX"], "held between two bounds"),
-            StandardFunction::Sel => ("SEL", &["G", "IN0", "IN1"], "one of two"),
-            StandardFunction::Mux => ("MUX", &["K", "IN0", "IN1", "…"], "one of several"),
-            StandardFunction::Len => ("LEN", ONE, "length of a text"),
-            StandardFunction::Left => ("LEFT", &["IN", "L"], "first characters of a text"),
-            StandardFunction::Right => ("RIGHT", &["IN", "L"], "last characters of a text"),
-            StandardFunction::Mid => ("MID", &["IN", "L", "P"], "characters from a place in a text"),
-            StandardFunction::Concat => ("CONCAT", MORE, "texts joined"),
-            StandardFunction::Insert => ("INSERT", &["IN1", "IN2", "P"], "a text put into a text"),
-            StandardFunction::Delete => ("DELETE", &["IN", "L", "P"], "a text without some characters"),
-            StandardFunction::Replace => {
-                ("REPLACE", &["IN1", "IN2", "L", "P"], "a text in place of some characters")
+            StandardFunction::Not => ("NOT", ONE, ["complement", "complément", "complemento"]),
+            StandardFunction::Move => {
+                ("MOVE", ONE, ["the value itself", "la valeur même", "o próprio valor"])
             }
-            StandardFunction::Find => ("FIND", TWO, "place of a text in a text"),
+            StandardFunction::Abs => ("ABS", ONE, ["absolute value", "valeur absolue", "valor absoluto"]),
+            StandardFunction::Sqrt => ("SQRT", ONE, ["square root", "racine carrée", "raiz quadrada"]),
+            StandardFunction::Ln => {
+                ("LN", ONE, ["natural logarithm", "logarithme naturel", "logaritmo natural"])
+            }
+            StandardFunction::Log => {
+                ("LOG", ONE, ["logarithm to base 10", "logarithme décimal", "logaritmo decimal"])
+            }
+            StandardFunction::Exp => ("EXP", ONE, ["power of e", "puissance de e", "potência de e"]),
+            StandardFunction::Sin => {
+                ("SIN", ONE, ["sine of radians", "sinus de radians", "seno de radianos"])
+            }
+            StandardFunction::Cos => {
+                ("COS", ONE, ["cosine of radians", "cosinus de radians", "cosseno de radianos"])
+            }
+            StandardFunction::Tan => {
+                ("TAN", ONE, ["tangent of radians", "tangente de radians", "tangente de radianos"])
+            }
+            StandardFunction::Asin => {
+                ("ASIN", ONE, ["arc sine, radians", "arc sinus, en radians", "arco seno, em radianos"])
+            }
+            StandardFunction::Acos => {
+                ("ACOS", ONE, ["arc cosine, radians", "arc cosinus, en radians", "arco cosseno, em radianos"])
+            }
+            StandardFunction::Atan => (
+                "ATAN",
+                ONE,
+                ["arc tangent, radians", "arc tangente, en radians", "arco tangente, em radianos"],
+            ),
+            StandardFunction::Trunc => ("TRUNC", ONE, ["whole part", "partie entière", "parte inteira"]),
+            StandardFunction::Shl => (
+                "SHL",
+                SHIFT,
+                ["bits moved to the left", "bits décalés à gauche", "bits deslocados para a esquerda"],
+            ),
+            StandardFunction::Shr => (
+                "SHR",
+                SHIFT,
+                ["bits moved to the right", "bits décalés à droite", "bits deslocados para a direita"],
+            ),
+            StandardFunction::Rol => (
+                "ROL",
+                SHIFT,
+                ["bits moved to the left in a ring", "bits tournés à gauche", "bits rodados para a esquerda"],
+            ),
+            StandardFunction::Ror => (
+                "ROR",
+                SHIFT,
+                ["bits moved to the right in a ring", "bits tournés à droite", "bits rodados para a direita"],
+            ),
+            StandardFunction::Min => ("MIN", MORE, ["the least", "le plus petit", "o menor"]),
+            StandardFunction::Max => ("MAX", MORE, ["the greatest", "le plus grand", "o maior"]),
+            StandardFunction::Limit => (
+                "LIMIT",
+                &["MN", "IN", "MX"],
+                ["held between two bounds", "gardé entre deux bornes", "mantido entre dois limites"],
+            ),
+            StandardFunction::Sel => {
+                ("SEL", &["G", "IN0", "IN1"], ["one of two", "l’un de deux", "um de dois"])
+            }
+            StandardFunction::Mux => {
+                ("MUX", &["K", "IN0", "IN1", "…"], ["one of several", "l’un de plusieurs", "um de vários"])
+            }
+            StandardFunction::Len => {
+                ("LEN", ONE, ["length of a text", "longueur d’un texte", "comprimento de um texto"])
+            }
+            StandardFunction::Left => (
+                "LEFT",
+                &["IN", "L"],
+                [
+                    "first characters of a text",
+                    "premiers caractères d’un texte",
+                    "primeiros caracteres de um texto",
+                ],
+            ),
+            StandardFunction::Right => (
+                "RIGHT",
+                &["IN", "L"],
+                [
+                    "last characters of a text",
+                    "derniers caractères d’un texte",
+                    "últimos caracteres de um texto",
+                ],
+            ),
+            StandardFunction::Mid => (
+                "MID",
+                &["IN", "L", "P"],
+                [
+                    "characters from a place in a text",
+                    "caractères à partir d’une place d’un texte",
+                    "caracteres a partir de um lugar de um texto",
+                ],
+            ),
+            StandardFunction::Concat => {
+                ("CONCAT", MORE, ["texts joined", "textes mis bout à bout", "textos unidos"])
+            }
+            StandardFunction::Insert => (
+                "INSERT",
+                &["IN1", "IN2", "P"],
+                ["a text put into a text", "un texte inséré dans un texte", "um texto inserido num texto"],
+            ),
+            StandardFunction::Delete => (
+                "DELETE",
+                &["IN", "L", "P"],
+                [
+                    "a text without some characters",
+                    "un texte sans certains caractères",
+                    "um texto sem alguns caracteres",
+                ],
+            ),
+            StandardFunction::Replace => (
+                "REPLACE",
+                &["IN1", "IN2", "L", "P"],
+                [
+                    "a text in place of some characters",
+                    "un texte à la place de certains caractères",
+                    "um texto em lugar de alguns caracteres",
+                ],
+            ),
+            StandardFunction::Find => (
+                "FIND",
+                TWO,
+                [
+                    "place of a text in a text",
+                    "place d’un texte dans un texte",
+                    "lugar de um texto num texto",
+                ],
+            ),
         };
         FunctionRow { name, inputs, does }
     }
@@ -218,23 +317,56 @@ impl StandardFunction {
 }
 
 /// The inputs of the function of an operator: AND, ADD, GT and their like take two and more.
-const fn of_operator(op: BinaryOp) -> (&'static [&'static str], &'static str) {
+const fn of_operator(op: BinaryOp) -> (&'static [&'static str], Told) {
     match op {
-        BinaryOp::Or => (MORE, "one of the conditions"),
-        BinaryOp::Xor => (MORE, "an odd number of the conditions"),
-        BinaryOp::And | BinaryOp::Dot => (MORE, "all of the conditions"),
-        BinaryOp::Eq => (MORE, "all equal"),
-        BinaryOp::Ne => (TWO, "not equal"),
-        BinaryOp::Lt => (MORE, "each less than the next"),
-        BinaryOp::Le => (MORE, "each at most the next"),
-        BinaryOp::Gt => (MORE, "each greater than the next"),
-        BinaryOp::Ge => (MORE, "each at least the next"),
-        BinaryOp::Add => (MORE, "sum"),
-        BinaryOp::Sub => (TWO, "difference"),
-        BinaryOp::Mul => (MORE, "product"),
-        BinaryOp::Div => (TWO, "quotient"),
-        BinaryOp::Mod => (TWO, "remainder"),
-        BinaryOp::Pow => (TWO, "power"),
+        BinaryOp::Or => (MORE, ["one of the conditions", "l’une des conditions", "uma das condições"]),
+        BinaryOp::Xor => (
+            MORE,
+            [
+                "an odd number of the conditions",
+                "un nombre impair de conditions",
+                "um número ímpar das condições",
+            ],
+        ),
+        BinaryOp::And | BinaryOp::Dot => {
+            (MORE, ["all of the conditions", "toutes les conditions", "todas as condições"])
+        }
+        BinaryOp::Eq => (MORE, ["all equal", "toutes égales", "todos iguais"]),
+        BinaryOp::Ne => (TWO, ["not equal", "différentes", "diferentes"]),
+        BinaryOp::Lt => (
+            MORE,
+            ["each less than the next", "chacune inférieure à la suivante", "cada um menor que o seguinte"],
+        ),
+        BinaryOp::Le => (
+            MORE,
+            [
+                "each at most the next",
+                "chacune au plus égale à la suivante",
+                "cada um no máximo igual ao seguinte",
+            ],
+        ),
+        BinaryOp::Gt => (
+            MORE,
+            [
+                "each greater than the next",
+                "chacune supérieure à la suivante",
+                "cada um maior que o seguinte",
+            ],
+        ),
+        BinaryOp::Ge => (
+            MORE,
+            [
+                "each at least the next",
+                "chacune au moins égale à la suivante",
+                "cada um pelo menos igual ao seguinte",
+            ],
+        ),
+        BinaryOp::Add => (MORE, ["sum", "somme", "soma"]),
+        BinaryOp::Sub => (TWO, ["difference", "différence", "diferença"]),
+        BinaryOp::Mul => (MORE, ["product", "produit", "produto"]),
+        BinaryOp::Div => (TWO, ["quotient", "quotient", "quociente"]),
+        BinaryOp::Mod => (TWO, ["remainder", "reste", "resto"]),
+        BinaryOp::Pow => (TWO, ["power", "puissance", "potência"]),
     }
 }
 

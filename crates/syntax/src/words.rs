@@ -3,49 +3,28 @@
 //! Few words are reserved. All others (`at`, `max`, `scan`, …) have a meaning only in certain
 //! places, and are names elsewhere.
 
-use g7_model::{BinaryOp, words};
+use std::sync::LazyLock;
 
-/// Reserved words: as plain names they would make an expression, a statement or a chart ambiguous.
+use g7_model::words;
+
+/// Reserved words by their first letter.
+static RESERVED: LazyLock<[Vec<String>; 128]> = LazyLock::new(|| {
+    let mut by_letter = std::array::from_fn(|_| Vec::new());
+    for word in words::reserved() {
+        let letter = word.bytes().next().map_or(0, usize::from);
+        by_letter[letter % 128].push(word);
+    }
+    by_letter
+});
+
+/// True for a reserved word: as a plain name it would make an expression, a statement or a chart ambiguous.
 pub(crate) fn is_reserved(word: &str) -> bool {
     // Most names end in a digit and need no comparison: no reserved word does.
     if word.ends_with(|c: char| c.is_ascii_digit()) {
         return false;
     }
-    matches!(
-        word,
-        "rise"
-            | "fall"
-            | "delay"
-            | "step"
-            | "initial"
-            | "enclosing"
-            | "macro"
-            | "chart"
-            | "macrochart"
-            | "task"
-            | "when"
-            | "priority"
-            | "input"
-            | "output"
-            | "var"
-            | "const"
-            | "function"
-            | "plant"
-            | "layout"
-            | "prove"
-            | "profile"
-            | "action"
-            | "transition"
-            | "TRUE"
-            | "FALSE"
-            | "true"
-            | "false"
-    ) || st(word).is_some()
-        || operator(word)
-}
-
-fn operator(word: &str) -> bool {
-    matches!(word, "not" | "NOT") || BinaryOp::of_word(word).is_some()
+    let list = word.bytes().next().and_then(|b| RESERVED.get(usize::from(b)));
+    list.is_some_and(|list| list.iter().any(|r| r == word))
 }
 
 /// The words of Structured Text that build statements.
@@ -106,8 +85,8 @@ pub(crate) fn st(word: &str) -> Option<St> {
 /// Words that begin or continue an item in some places only. A name in such a place is printed in
 /// back-ticks.
 pub(crate) fn is_contextual(word: &str) -> bool {
-    words::FILE.contains(&word)
-        || words::CHART.contains(&word)
+    words::has(words::FILE, word)
+        || words::has(words::CHART, word)
         || matches!(
             word,
             "at" | "retain" | "inverted" | "safe" | "every" | "on" | "st" | "il" | "ld" | "INIT"

@@ -303,6 +303,17 @@ pub fn node(package: &str, script: &str) -> Option<Command> {
     Some(command)
 }
 
+/// The program of tree-sitter, with a compiler for the parsers that it makes; otherwise the skip is counted.
+pub fn tree_sitter() -> Option<PathBuf> {
+    let own = std::env::var_os("G7_PEERS").map(|peers| Path::new(&peers).join("tree-sitter/bin/tree-sitter"));
+    let program = own.filter(|p| p.is_file()).unwrap_or_else(|| "tree-sitter".into());
+    let found = quiet(Command::new(&program).arg("--version")) && starts("cc");
+    if !found {
+        skip("tree-sitter missing");
+    }
+    found.then_some(program)
+}
+
 /// True if a command starts and succeeds; nothing of what it says is shown.
 fn quiet(command: &mut Command) -> bool {
     command.stdout(Stdio::null()).stderr(Stdio::null()).status().is_ok_and(|s| s.success())

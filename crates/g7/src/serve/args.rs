@@ -53,6 +53,17 @@ pub(crate) struct Serve {
     /// Do not open a browser; only print the address.
     #[arg(long)]
     pub(super) no_open: bool,
+    /// Let VS Code show the page in a panel; without it no other page may frame it. ADDRESS is that of a VS Code in
+    /// the browser.
+    #[arg(
+        long,
+        value_name = "ADDRESS",
+        num_args = 0..=1,
+        require_equals = true,
+        default_missing_value = "",
+        conflicts_with_all = ["host", "users", "online"]
+    )]
+    pub(super) framed: Option<String>,
     /// The chart to open first, as its path in the folder.
     #[arg(long, value_name = "FILE")]
     pub(super) start: Option<String>,

@@ -47,6 +47,8 @@ pub(super) struct Guard {
     pub(super) certificate: Option<Arc<Certificate>>,
     pub(super) audit: Audit,
     pub(super) foreign: Foreign,
+    /// The pages that may show this one in a frame, as the policy names them; none may if it is missing.
+    pub(super) framed: Option<String>,
 }
 
 /// Requests that other sites cause: a bounded number of rows a minute from an address, the others as a count.
@@ -85,11 +87,9 @@ fn needed(method: &Method, path: &str) -> Option<Role> {
 
 const POLICY: &str = "default-src 'self'; script-src 'self' 'wasm-unsafe-eval'; worker-src 'self' blob:; \
     style-src 'self' 'unsafe-inline'; img-src 'self' data: blob:; font-src 'self' data:; object-src 'none'; \
-    base-uri 'none'; form-action 'none'; frame-ancestors 'none'";
-
-const HEADERS: [(HeaderName, &str); 6] = [
+    base-uri 'none'; form-action 'none'";
+const HEADERS: [(HeaderName, &str); 5] = [
     (header::X_CONTENT_TYPE_OPTIONS, "nosniff"),
-    (header::X_FRAME_OPTIONS, "DENY"),
     // The address contains the token, so it must not be sent to other sites.
     (header::REFERRER_POLICY, "no-referrer"),
     (HeaderName::from_static("cross-origin-opener-policy"), "same-origin"),
@@ -112,6 +112,9 @@ pub(super) async fn guard(State(guard): State<Guard>, mut request: Request, next
     let headers = response.headers_mut();
     for (name, value) in HEADERS {
         headers.insert(name, HeaderValue::from_static(value));
+    }
+    if guard.framed.is_none() {
+        headers.insert(header::X_FRAME_OPTIONS, HeaderValue::from_static("DENY"));
     }
     if let Ok(policy) = HeaderValue::from_str(&guard.policy()) {
         headers.insert(header::CONTENT_SECURITY_POLICY, policy);
@@ -220,14 +223,16 @@ impl Guard {
     /// it is named.
     fn policy(&self) -> String {
         let port = self.bound.port();
+        let frames = self.framed.as_deref().unwrap_or("'none'");
+        let policy = format!("{POLICY}; frame-ancestors {frames}");
         if self.certificate.is_some() {
-            return format!("{POLICY}; connect-src 'self' wss://*:{port}");
+            return format!("{policy}; connect-src 'self' wss://*:{port}");
         }
         let mut live = format!("'self' ws://localhost:{port} ws://127.0.0.1:{port}");
         if !self.bound.ip().is_unspecified() && !self.bound.ip().is_loopback() {
             live.push_str(&format!(" ws://{}", self.bound));
         }
-        format!("{POLICY}; connect-src {live}")
+        format!("{policy}; connect-src {live}")
     }
 }
 
@@ -288,6 +293,7 @@ mod tests {
             certificate: None,
             audit: Audit::default(),
             foreign: Foreign::default(),
+            framed: None,
         }
     }
 

@@ -29,6 +29,8 @@ pub(super) struct Rules {
     /// The file of the log.
     pub(super) log: Option<PathBuf>,
     foreign: Foreign,
+    /// The pages that may show this one in a frame.
+    framed: Option<String>,
 }
 
 /// A file that the arguments name, or the io file beside itself.
@@ -65,13 +67,16 @@ impl Rules {
         let whole = time(|s| s.session.as_ref().map(|at| at.value));
         let open = |path: PathBuf| Access::open(&path, Lasts::of(idle, whole), audit.clone()).map(Arc::new);
         let access = users.map(open).transpose()?;
-        Ok(Rules { host, port, certificate, access, audit: audit.clone(), log, foreign: Foreign::default() })
+        let framed = args.framed.as_deref().map(frames).transpose()?;
+        let (audit, foreign) = (audit.clone(), Foreign::default());
+        Ok(Rules { host, port, certificate, access, audit, log, foreign, framed })
     }
 
     /// The guard that judges requests.
     pub(super) fn guard(&self, pass: Pass, bound: SocketAddr) -> Guard {
         let certificate = self.certificate.clone();
-        Guard { pass, bound, certificate, audit: self.audit.clone(), foreign: self.foreign.clone() }
+        let (audit, foreign, framed) = (self.audit.clone(), self.foreign.clone(), self.framed.clone());
+        Guard { pass, bound, certificate, audit, foreign, framed }
     }
 
     /// The door that lets connections in.
@@ -96,6 +101,24 @@ impl Rules {
             certificate.look();
         }
         self.foreign.tell(&self.audit);
+    }
+}
+
+/// The pages that VS Code puts round a panel, on a desktop and in a browser; no site can have such an address.
+const EDITORS: &str = "'self' vscode-webview: vscode-file: https://*.vscode-cdn.net";
+
+/// The pages that may show this one: those of VS Code, and the page of one in the browser at an address.
+fn frames(address: &str) -> Result<String, Failure> {
+    if address.is_empty() {
+        return Ok(EDITORS.to_owned());
+    }
+    let host = ["http://", "https://"].iter().find_map(|scheme| address.strip_prefix(scheme));
+    let signs = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | ':' | '[' | ']');
+    match host {
+        Some(host) if !host.is_empty() && host.chars().all(signs) => Ok(format!("{EDITORS} {address}")),
+        _ => Err(Failure::Usage(format!(
+            "`{address}` is no address of a page without a path, such as http://127.0.0.1:8080"
+        ))),
     }
 }
 

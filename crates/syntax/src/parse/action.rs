@@ -5,16 +5,17 @@ use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Name, Order, Path, Problem, Qualifier, Situation, Span, Stmt, Target,
-    Work, codes, words::ACTION,
+    Work, codes,
+    words::{ACTION, has, texts},
 };
 
 /// Every word that an action can begin with.
 fn beginnings() -> Vec<&'static str> {
-    Qualifier::ALL.into_iter().map(Qualifier::name).chain(ACTION.iter().copied()).collect()
+    Qualifier::ALL.into_iter().map(Qualifier::name).chain(texts(ACTION)).collect()
 }
 
 fn begins_action(word: &str) -> bool {
-    ACTION.contains(&word) || Qualifier::named(word).is_some()
+    has(ACTION, word) || Qualifier::named(word).is_some()
 }
 
 impl Parser<'_> {

@@ -66,7 +66,8 @@ impl Parser<'_> {
                 return;
             }
             let start = self.cur.start;
-            let read = self.chart_item(items) || self.correct(words::CHART) && self.chart_item(items);
+            let read =
+                self.chart_item(items) || self.correct(&words::texts(words::CHART)) && self.chart_item(items);
             // A reserved word before `:` is read as a label although it is not a name.
             if !read || self.cur.start == start {
                 self.lost_chart_item(start);
@@ -289,7 +290,7 @@ impl Parser<'_> {
 
     /// True at a word that can begin an item of a chart.
     fn word_of_chart(&self) -> bool {
-        words::CHART.contains(&self.word())
+        words::has(words::CHART, self.word())
     }
 
     fn macro_step(&mut self, start: u32, initial: bool, kind: &StepKind) -> Step {

@@ -20,7 +20,9 @@ impl Parser<'_> {
             let start = self.cur.start;
             match self.item() {
                 Some(item) => items.push(item),
-                None if self.correct(g7_model::words::FILE) => items.extend(self.item()),
+                None if self.correct(&g7_model::words::texts(g7_model::words::FILE)) => {
+                    items.extend(self.item())
+                }
                 None => self.lost_item(start),
             }
         }

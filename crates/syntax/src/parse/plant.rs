@@ -27,7 +27,9 @@ impl Parser<'_> {
                 let at = self.cur.start;
                 match self.line(Parser::plant_item) {
                     Some(item) => items.push(item),
-                    None if self.correct(words::PLANT) => items.extend(self.line(Parser::plant_item)),
+                    None if self.correct(&words::texts(words::PLANT)) => {
+                        items.extend(self.line(Parser::plant_item))
+                    }
                     None => self.lost_plant_item(at),
                 }
             }

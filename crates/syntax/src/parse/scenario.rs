@@ -60,7 +60,7 @@ impl Parser<'_> {
             }
             let start = self.cur.start;
             let kind = match self.line(Parser::test_statement) {
-                None if self.correct(words::TEST) => self.line(Parser::test_statement),
+                None if self.correct(&words::texts(words::TEST)) => self.line(Parser::test_statement),
                 kind => kind,
             };
             match kind {
@@ -78,7 +78,7 @@ impl Parser<'_> {
         } else {
             let help = match self.word() {
                 "assert" | "check" | "verify" => "a condition is asked by `expect a`".into(),
-                _ => format!("there are {}", words::TEST.join(", ")),
+                _ => format!("there are {}", words::texts(words::TEST).join(", ")),
             };
             self.unexpected("a statement of a test", Some(&help));
         }
@@ -184,7 +184,7 @@ impl Parser<'_> {
         }
         self.bump();
         let named = match self.cur.kind {
-            Tok::Word => !words::TEST.contains(&self.word()) && self.at_name(),
+            Tok::Word => !words::has(words::TEST, self.word()) && self.at_name(),
             kind => kind == Tok::Ticked,
         };
         TestStmtKind::ExpectFault(if named { self.name_if() } else { None })

@@ -196,7 +196,7 @@ impl Printer<'_> {
                 self.push("expect fault");
                 if let Some(name) = name {
                     self.push(" ");
-                    if g7_model::words::TEST.contains(&&*name.text)
+                    if g7_model::words::has(g7_model::words::TEST, &name.text)
                         || !name.text.starts_with(crate::lexer::name_start)
                     {
                         self.push(&quote::quote(&name.text, '`'));

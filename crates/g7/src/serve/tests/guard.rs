@@ -121,6 +121,27 @@ async fn every_answer_keeps_the_page_to_itself() {
 }
 
 #[tokio::test]
+async fn only_editors_may_frame_the_page_and_only_where_the_server_was_asked_to_let_them() {
+    let server = Server::new().await;
+    assert_eq!(server.get("/").await.header("x-frame-options"), Some("DENY"));
+    let editors = "frame-ancestors 'self' vscode-webview: vscode-file: https://*.vscode-cdn.net";
+    for (given, wanted) in
+        [("", editors.to_owned()), ("http://127.0.0.1:8080", format!("{editors} http://127.0.0.1:8080"))]
+    {
+        let server = Server::with(|args| args.framed = Some(given.to_owned()), Limits::default()).await;
+        let reply = server.get("/").await;
+        assert_eq!(reply.header("x-frame-options"), None);
+        let policy = reply.header("content-security-policy").expect("a policy");
+        assert_eq!(policy.split("; ").find(|p| p.starts_with("frame-ancestors")), Some(&*wanted));
+    }
+    // An address cannot bring rules of its own.
+    for wrong in ["*", "https:", "http://", "http://a; script-src *", "http://a/path", "http://a b"] {
+        let args = Serve { framed: Some(wrong.to_owned()), ..args_of(Path::new(".")) };
+        assert!(Rules::of(&args, None, &crate::audit::Audit::default(), None).is_err(), "{wrong}");
+    }
+}
+
+#[tokio::test]
 async fn the_page_comes_from_its_folder_only() {
     let server = Server::new().await;
     fs::write(server.path("index.html"), "<p>page").expect("a page");

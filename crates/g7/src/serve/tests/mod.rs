@@ -105,6 +105,7 @@ fn args_of(folder: &Path) -> Serve {
         log: None,
         read_only: false,
         no_open: true,
+        framed: None,
         start: None,
         drive: Drive { online: false, io: None, simulate: None },
         plant: None,

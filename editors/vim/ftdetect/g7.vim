@@ -1,0 +1,2 @@
+" Files of G7: charts as text.
+autocmd BufNewFile,BufRead *.g7 setfiletype g7
