@@ -71,6 +71,11 @@ impl<'s> Draft<'s> {
         at
     }
 
+    /// The text of a new part as it was typed.
+    pub(crate) fn typed(&self, at: Span) -> Option<String> {
+        self.raw.get(&at.start).filter(|_| is_fresh(at.into())).cloned()
+    }
+
     pub(crate) fn chart(&self, name: &str) -> Result<&Chart, Refusal> {
         self.doc.charts().find(|c| *c.name.text == *name).ok_or_else(|| no_chart(name))
     }

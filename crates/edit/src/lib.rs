@@ -2,10 +2,10 @@
 //!
 //! ```text
 //! text + Document -> gesture -> Draft (the document as it is to be)
-//!                                 -> write -> splices -> parse again -> compare
+//!                                 -> difference -> splices -> parse again -> compare
 //! ```
 //!
-//! The text is the truth: a gesture says what the document is to become, and the writer finds the
+//! The text is the truth: a gesture says what the document is to become, and `difference` finds the
 //! least change of the text that leads there. Only lines that must change do; notes, blank lines,
 //! spelling and the order of everything else stay.
 //!
@@ -19,6 +19,7 @@
 
 mod change;
 mod copy;
+mod difference;
 mod draft;
 mod gesture;
 mod gestures;
@@ -26,7 +27,6 @@ mod history;
 mod id;
 mod needs;
 mod splice;
-mod write;
 
 pub use change::{Anchors, Edit, Refusal, Source};
 pub use copy::{copy, copy_placed};
@@ -72,8 +72,8 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     }
     let mut draft = Draft::new(source, anchors);
     gestures::carry_out(&mut draft, gesture)?;
-    write::settle(&mut draft);
-    let splices = write::difference(&draft);
+    difference::settle(&mut draft);
+    let splices = difference::difference(&draft);
     let after = spliced(source.text, &splices).ok_or_else(unwritable)?;
     judge(&after, &draft.doc)?;
     let splices = with_besides(source.text, splices, std::mem::take(&mut draft.besides))?;

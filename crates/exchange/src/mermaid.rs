@@ -9,7 +9,7 @@ use std::collections::HashMap;
 use std::fmt::Write;
 
 use g7_model::{Chart, ChartKind, Document, Step, StepKind, Transition};
-use g7_syntax::{print_action, print_expr};
+use g7_syntax::{Part, print_expr, print_part};
 
 use crate::Written;
 
@@ -58,7 +58,11 @@ fn draw_step(text: &mut String, step: &Step, id: &str) {
         line(text, 2, &format!("style {id} stroke-width:4px"));
     }
     for (i, action) in step.actions.iter().enumerate() {
-        line(text, 2, &format!("{id}a{i}[{}]:::action", label(&[print_action(action).trim_end()], None)));
+        line(
+            text,
+            2,
+            &format!("{id}a{i}[{}]:::action", label(&[&print_part(Part::Action(action), None)], None)),
+        );
         line(text, 2, &format!("{id} -.- {id}a{i}"));
     }
 }

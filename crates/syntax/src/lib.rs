@@ -35,7 +35,9 @@ mod words;
 pub use decode::decode;
 pub use lines::{LineColumn, LineIndex};
 pub use parse::SWITCHES;
-pub use print::{print, print_action, print_expr, print_statements};
+pub use print::{
+    Part, Spelled, chart_items_apart, items_apart, print, print_expr, print_part, print_statements,
+};
 pub use tokens::{
     Token, TokenKind, Tokens, is_reserved, show_comment, show_name, show_path_name, show_step_name, tokens,
 };

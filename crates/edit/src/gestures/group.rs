@@ -8,16 +8,16 @@
 use g7_compile::references::Written;
 use g7_compile::{Definition, references};
 use g7_model::{Chart, ChartItem, FileId, Item, Name, Span, Step, StepKind, Transition};
-use g7_syntax::{show_name, show_path_name, show_step_name};
+use g7_syntax::{Part, print_part, show_name, show_path_name, show_step_name};
 
 use super::delete::Chosen;
 use super::graph::replace;
 use super::insert::macro_name;
 use crate::change::{Refusal, refuse};
+use crate::difference::reindent;
 use crate::draft::Draft;
 use crate::id::ItemId;
 use crate::splice::{Splice, spliced};
-use crate::write::{reindent, step_list};
 
 /// The sequence that moves.
 struct Sequence {
@@ -138,7 +138,7 @@ fn expansion_text(
         steps.push(moved_text(d, step.at.0, own)?);
     }
     for t in &sequence.inner {
-        let lead = if t.chained { format!("{} ", step_list(&t.from)) } else { String::new() };
+        let lead = if t.chained { print_part(Part::Steps(&t.from), None) + " " } else { String::new() };
         transitions.push(lead + &moved_text(d, t.at.0, names.clone())?);
     }
     if !sequence.exit {

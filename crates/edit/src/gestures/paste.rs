@@ -1,7 +1,7 @@
 //! Pastes a copied part. Names that already exist are replaced by new ones in the pasted text and
 //! in all references inside it.
 
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
 use g7_compile::{Definition, references};
 use g7_model::{
@@ -14,11 +14,12 @@ use super::rename::written;
 use super::table::{declares, put_variable};
 use super::{layout_section, notes, places};
 use crate::change::{Refusal, refuse};
+use crate::difference::reindent;
 use crate::draft::{Draft, Mark};
 use crate::id::ItemId;
 use crate::needs::needs;
 use crate::splice::spliced;
-use crate::write::{reindent, step_list, variable_text};
+use g7_syntax::{Part, print_part};
 
 /// Greatest length of a pasted text, in bytes.
 const MOST: usize = 1 << 20;
@@ -180,7 +181,7 @@ fn same(a: &VarDecl, b: &VarDecl) -> bool {
 /// Describes a declaration: class, type and initial value.
 fn sort(v: &VarDecl) -> String {
     let bare = VarDecl { address: None, inverted: false, safe: None, comment: None, ..v.clone() };
-    let text = variable_text(&bare, &HashMap::new());
+    let text = print_part(Part::Variable(&bare), None);
     let names = v.names.iter().map(|n| g7_syntax::show_name(&n.text)).collect::<Vec<_>>().join(", ");
     format!("`{}`", text.replacen(&format!("{names} : "), "", 1))
 }
@@ -301,7 +302,7 @@ fn paste_step(d: &mut Draft<'_>, chart: &str, text: &str, step: &Step) -> Result
 
 fn paste_transition(d: &mut Draft<'_>, chart: &str, text: &str, t: &Transition) -> Result<Span, Refusal> {
     let mut new = t.clone();
-    let lead = if t.chained { format!("{} ", step_list(&t.from)) } else { String::new() };
+    let lead = if t.chained { print_part(Part::Steps(&t.from), None) + " " } else { String::new() };
     new.chained = false;
     new.at = d.fresh_as(lead + &lines(text, t.at.0));
     let at = new.at.0;

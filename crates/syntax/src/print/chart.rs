@@ -4,7 +4,7 @@ use super::Printer;
 use super::item::starts;
 use crate::quote;
 use g7_model::{
-    Action, ActionKind, Chart, ChartItem, ChartKind, ExprKind, Literal, Name, Order, Situation, Step,
+    Action, ActionKind, Chart, ChartItem, ChartKind, ExprKind, Literal, Name, Order, Situation, Span, Step,
     StepKind, Target, Transition,
 };
 
@@ -26,14 +26,13 @@ impl Printer<'_> {
     fn chart_items(&mut self, items: &[ChartItem]) {
         let mut before: Option<&ChartItem> = None;
         for item in items {
-            let apart = self.source.is_none()
-                && before.is_some_and(|b| family(b) != family(item) || family(item) == 3);
+            let apart = self.source.is_none() && before.is_some_and(|b| stand_apart(b, item));
             self.chart_item(item, before, apart);
             before = Some(item);
         }
     }
 
-    fn chart_item(&mut self, item: &ChartItem, before: Option<&ChartItem>, apart: bool) {
+    pub(super) fn chart_item(&mut self, item: &ChartItem, before: Option<&ChartItem>, apart: bool) {
         let at = item.at();
         match item {
             ChartItem::Var(v) => self.line(at, apart, |p| p.variable(v)),
@@ -62,15 +61,20 @@ impl Printer<'_> {
         }
     }
 
-    fn step(&mut self, step: &Step) {
-        self.push(if step.initial { "initial " } else { "" });
-        self.push(match step.kind {
-            StepKind::Plain => "step ",
-            StepKind::Entry => "entry step ",
-            StepKind::Exit => "exit step ",
-            StepKind::Enclosing => "enclosing step ",
-            StepKind::Macro(_) => "macro ",
+    pub(super) fn step_words(&mut self, kind: &StepKind, initial: bool) {
+        self.push(if initial { "initial " } else { "" });
+        self.push(match kind {
+            StepKind::Plain => "step",
+            StepKind::Entry => "entry step",
+            StepKind::Exit => "exit step",
+            StepKind::Enclosing => "enclosing step",
+            StepKind::Macro(_) => "macro",
         });
+    }
+
+    fn step(&mut self, step: &Step) {
+        self.step_words(&step.kind, step.initial);
+        self.push(" ");
         self.name(&step.name.text);
         if let StepKind::Macro(expansion) = &step.kind {
             self.push(" = ");
@@ -82,14 +86,13 @@ impl Printer<'_> {
             return;
         }
         self.push(" ");
-        self.actions(step);
+        self.actions(&step.actions, step.at.0);
     }
 
-    /// The actions in braces; a single short one stays on the line.
-    fn actions(&mut self, step: &Step) {
-        let at = step.at.0;
-        let alone = match step.actions.as_slice() {
-            [one] => Some(one).filter(|_| !self.notes_in(at)),
+    /// The actions of a step at a place, in braces; a single short one stays on the line.
+    pub(super) fn actions(&mut self, actions: &[Action], at: Span) {
+        let alone = match actions {
+            [one] => Some(one).filter(|_| !self.notes_in(at) && !self.spelled_with_note(one.at.0)),
             _ => None,
         };
         let inline = alone.is_some_and(|action| {
@@ -102,9 +105,9 @@ impl Printer<'_> {
         if inline {
             return;
         }
-        let first = step.actions.first().map(|a| a.at.0.start);
+        let first = actions.first().map(|a| a.at.0.start);
         self.braces(at, first, |p| {
-            for action in &step.actions {
+            for action in actions {
                 if has_block(action) {
                     p.group(action.at.0, false, |p| p.action(action));
                 } else {
@@ -115,6 +118,9 @@ impl Printer<'_> {
     }
 
     pub(super) fn action(&mut self, action: &Action) {
+        if self.as_spelled(action.at.0) {
+            return;
+        }
         match &action.kind {
             ActionKind::Qualified { qualifier, time, target, condition } => {
                 self.push(qualifier.name());
@@ -199,8 +205,8 @@ impl Printer<'_> {
     fn transition(&mut self, t: &Transition, chained: bool) {
         if !chained {
             if let Some(label) = &t.label {
-                self.first_name(&label.text);
-                self.push(": ");
+                self.transition_label(label);
+                self.push(" ");
             }
             self.step_list(&t.from);
             self.push(" ");
@@ -219,7 +225,13 @@ impl Printer<'_> {
         }
     }
 
-    fn step_list(&mut self, names: &[Name]) {
+    /// A label and its colon.
+    pub(super) fn transition_label(&mut self, label: &Name) {
+        self.first_name(&label.text);
+        self.push(":");
+    }
+
+    pub(super) fn step_list(&mut self, names: &[Name]) {
         if let [one] = names {
             return self.first_name(&one.text);
         }
@@ -244,6 +256,11 @@ fn has_block(action: &Action) -> bool {
         | ActionKind::EachScan { work, .. } => matches!(work, Work::Block(_)),
         _ => false,
     }
+}
+
+/// True if a blank line separates two items that a program made.
+pub(super) fn stand_apart(a: &ChartItem, b: &ChartItem) -> bool {
+    family(a) != family(b) || family(b) == 3
 }
 
 /// The group of an item: items of one group stand together without a blank line, those of group 3

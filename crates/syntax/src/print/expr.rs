@@ -7,6 +7,9 @@ use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
 
 impl<'a> Printer<'a> {
     pub(super) fn expr(&mut self, e: &Expr) {
+        if self.as_spelled(e.at.0) {
+            return;
+        }
         self.operand(e, 1);
     }
 

@@ -21,11 +21,11 @@ impl Printer<'_> {
 
     /// True if a blank line always separates two items, whatever the source has.
     fn stand_apart(&self, a: &Item, b: &Item) -> bool {
-        let (a, b) = (family(a), family(b));
-        a == Family::Braces || b == Family::Braces || self.source.is_none() && a != b
+        let braces = |item| family(item) == Family::Braces;
+        braces(a) || braces(b) || self.source.is_none() && stand_apart(a, b)
     }
 
-    fn item(&mut self, item: &Item, apart: bool) {
+    pub(super) fn item(&mut self, item: &Item, apart: bool) {
         match item {
             Item::Profile(p) => self.line(p.at.0, apart, |s| s.profile(p)),
             Item::Cycle(time, at) => self.line(at.0, apart, |s| s.time_clause("scan", Some(*time), at.0)),
@@ -157,6 +157,12 @@ impl Printer<'_> {
         }
         self.push(")");
     }
+}
+
+/// True if a blank line separates two items that a program made.
+pub(super) fn stand_apart(a: &Item, b: &Item) -> bool {
+    let (a, b) = (family(a), family(b));
+    a == Family::Braces || a != b
 }
 
 /// Items that stand together without a blank line when a program made them.

@@ -8,6 +8,7 @@
 mod chart;
 mod expr;
 mod item;
+mod part;
 mod st;
 mod world;
 
@@ -15,7 +16,8 @@ use crate::lexer::{name_continue, name_start};
 use crate::quote;
 use crate::{LineIndex, words};
 use g7_iec::constant;
-use g7_model::{Action, Document, Expr, Nanos, Note, Span, Stmt};
+use g7_model::{Document, Expr, Nanos, Note, Span, Stmt};
+pub use part::{Part, Spelled, chart_items_apart, items_apart, print_part};
 
 /// The largest width of a line that is joined from several parts.
 const WIDTH: usize = 100;
@@ -45,19 +47,14 @@ pub fn print_statements(statements: &[Stmt]) -> String {
     printer.out
 }
 
-/// The canonical text of one action, on one line or more.
-pub fn print_action(action: &Action) -> String {
-    let mut printer = Printer::new(&[], None);
-    printer.action(action);
-    printer.out
-}
-
 /// The text so far, and the notes that are still to be printed.
 struct Printer<'a> {
     out: String,
     indent: usize,
     notes: &'a [Note],
     source: Option<LineIndex<'a>>,
+    /// The texts of parts that keep their spelling.
+    spelled: Option<Spelled<'a>>,
     /// The place in the source where the last element of this block ended; `None` at its start.
     last_end: Option<u32>,
 }
@@ -65,7 +62,7 @@ struct Printer<'a> {
 impl<'a> Printer<'a> {
     fn new(notes: &'a [Note], source: Option<&'a str>) -> Printer<'a> {
         let source = source.map(LineIndex::new);
-        Printer { out: String::new(), indent: 0, notes, source, last_end: None }
+        Printer { out: String::new(), indent: 0, notes, source, spelled: None, last_end: None }
     }
 
     fn push(&mut self, text: &str) {

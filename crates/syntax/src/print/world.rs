@@ -320,7 +320,7 @@ impl Printer<'_> {
         });
     }
 
-    fn place_at(&mut self, place: &PlaceAt) {
+    pub(super) fn place_at(&mut self, place: &PlaceAt) {
         match &place.what {
             Placed::Step(name) => {
                 self.push("step ");

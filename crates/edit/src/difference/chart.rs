@@ -1,12 +1,11 @@
-//! Writes charts and their items.
+//! Changes charts and the lists of their items.
 
 use g7_model::{Chart, ChartItem, Span};
-use g7_syntax::show_step_name;
+use g7_syntax::{Part, chart_items_apart, print_part};
 
 use super::item;
 use super::lines::{Sheet, reindent};
 use super::list::{Block, Style, changed, list};
-use super::text::{comment, printed, step_list};
 use crate::draft::{Draft, is_fresh};
 
 /// Changes a chart in place.
@@ -15,7 +14,7 @@ pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Chart, new: &
     let (head, Some(open)) = sheet.header(start, end) else { return };
     if old.comment != new.comment {
         let name = head.get(1).map_or(start, |t| t.end);
-        comment(sheet, &head, name, new.comment.as_deref());
+        sheet.put_comment(&head, name, new.comment.as_deref());
     }
     let outer = sheet.indent(start);
     let block = Block { open: Some(open.end), close: end - 1, indent: format!("{outer}  "), outer };
@@ -25,7 +24,7 @@ pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Chart, new: &
 /// The text of a new chart; its items may come from elsewhere in the text.
 pub(crate) fn fresh(sheet: &Sheet<'_>, draft: &Draft<'_>, chart: &Chart) -> String {
     let bare = Chart { items: Vec::new(), ..chart.clone() };
-    let mut out = printed(g7_model::Item::Chart(bare));
+    let mut out = print_part(Part::Item(&g7_model::Item::Chart(bare)), None);
     if chart.items.is_empty() {
         return out;
     }
@@ -78,8 +77,8 @@ impl Style<ChartItem> for Items<'_, '_> {
     fn lead(&self, old: &ChartItem, new: &ChartItem) -> Option<String> {
         let (ChartItem::Transition(a), ChartItem::Transition(b)) = (old, new) else { return None };
         (a.chained && !b.chained).then(|| {
-            let label = b.label.as_ref().map_or(String::new(), |l| format!("{}: ", show_step_name(&l.text)));
-            format!("{label}{} ", step_list(&b.from))
+            let label = b.label.as_ref().map(|l| print_part(Part::Label(l), None) + " ");
+            format!("{}{} ", label.unwrap_or_default(), print_part(Part::Steps(&b.from), None))
         })
     }
 
@@ -91,41 +90,16 @@ impl Style<ChartItem> for Items<'_, '_> {
             let text = lead.unwrap_or_default() + &changed(sheet, self, old, new);
             return format!("{indent}{deeper}{}", reindent(&text, &own, indent, sheet.newline));
         }
-        let text = match (new, self.draft.raw.get(&self.at(new).start)) {
-            (_, Some(raw)) => raw.clone(),
-            (ChartItem::Var(v), None) => item::variable_text(v, &self.draft.raw),
-            (ChartItem::Transition(t), None) => item::transition_text(t, &self.draft.raw),
-            (ChartItem::Step(s), None) => item::step_text(s, &self.draft.raw),
-            (other, None) => {
-                let chart = self.draft.source.document.charts().next();
-                let Some(chart) = chart else { return String::new() };
-                let one = Chart { items: vec![other.clone()], comment: None, ..chart.clone() };
-                let text = printed(g7_model::Item::Chart(one));
-                let inside: Vec<&str> = text.lines().skip(1).collect();
-                let lines = inside.split_last().map_or(&[][..], |(_, rest)| rest);
-                lines.iter().map(|l| l.strip_prefix("  ").unwrap_or(l)).collect::<Vec<_>>().join("\n")
-            }
-        };
+        let typed = |at| self.draft.typed(at);
+        let text = typed(self.at(new)).unwrap_or_else(|| print_part(Part::ChartItem(new), Some(&typed)));
         format!("{indent}{}", reindent(&text, "", indent, sheet.newline))
     }
 
     fn apart(&self, a: &ChartItem, b: &ChartItem) -> bool {
-        let (a, b) = (family(a), family(b));
-        a != b || b == 3
+        chart_items_apart(a, b)
     }
 
     fn inner(&self, thing: &ChartItem) -> bool {
         matches!(thing, ChartItem::Transition(t) if t.chained)
-    }
-}
-
-/// The group of an item: items of one group stand together without blank lines; group 3 always has
-/// blank lines.
-fn family(item: &ChartItem) -> u8 {
-    match item {
-        ChartItem::Var(_) => 0,
-        ChartItem::Step(_) => 1,
-        ChartItem::Transition(_) => 2,
-        ChartItem::Pre(..) | ChartItem::Post(..) | ChartItem::Action(_) | ChartItem::Section(_) => 3,
     }
 }

@@ -1,13 +1,13 @@
-//! Writes the items of a file.
+//! Changes the list of the items of a file.
 
-use g7_model::{Item, Layout, PlaceAt, Placed, Span};
+use g7_model::{Item, Layout, PlaceAt, Span};
+use g7_syntax::{Part, items_apart, print_part};
 
 use super::chart;
 use super::item;
 use super::lines::Sheet;
 use super::list::{Block, Style, list};
-use super::text::printed;
-use crate::draft::{Draft, is_fresh};
+use crate::draft::Draft;
 
 /// Writes the whole file.
 pub(crate) fn write(sheet: &mut Sheet<'_>, draft: &Draft<'_>) {
@@ -38,26 +38,24 @@ impl Style<Item> for Items<'_, '_> {
             }
             (a, b) if a != b => {
                 let at = a.at();
-                sheet.put(at.start as usize, at.end as usize, printed(b.clone()));
+                sheet.put(at.start as usize, at.end as usize, print_part(Part::Item(b), None));
             }
             _ => {}
         }
     }
 
     fn fresh(&self, sheet: &Sheet<'_>, new: &Item, _indent: &str) -> String {
-        let raw = self.draft.raw.get(&new.at().start).filter(|_| is_fresh(new.at().into()));
-        match (new, raw) {
-            (_, Some(raw)) => raw.clone(),
+        let typed = |at| self.draft.typed(at);
+        let text = match (new, typed(new.at())) {
+            (_, Some(typed)) => typed,
             (Item::Chart(c), None) => chart::fresh(sheet, self.draft, c),
-            (Item::Var(v), None) => item::variable_text(v, &self.draft.raw),
-            (other, None) => printed(other.clone()),
-        }
-        .replace('\n', sheet.newline)
-        .replace("\r\r", "\r")
+            (other, None) => print_part(Part::Item(other), Some(&typed)),
+        };
+        text.replace('\n', sheet.newline).replace("\r\r", "\r")
     }
 
     fn apart(&self, a: &Item, b: &Item) -> bool {
-        family(a) == 9 || family(a) != family(b)
+        items_apart(a, b)
     }
 }
 
@@ -79,52 +77,15 @@ impl Style<PlaceAt> for Places {
 
     fn edit(&self, sheet: &mut Sheet<'_>, old: &PlaceAt, new: &PlaceAt) {
         if old != new {
-            sheet.put(old.at.0.start as usize, old.at.0.end as usize, place_text(new));
+            sheet.put(old.at.0.start as usize, old.at.0.end as usize, print_part(Part::Place(new), None));
         }
     }
 
     fn fresh(&self, _sheet: &Sheet<'_>, new: &PlaceAt, indent: &str) -> String {
-        format!("{indent}{}", place_text(new))
+        format!("{indent}{}", print_part(Part::Place(new), None))
     }
 
     fn apart(&self, _: &PlaceAt, _: &PlaceAt) -> bool {
         false
-    }
-}
-
-fn place_text(place: &PlaceAt) -> String {
-    let number = |n: i32| {
-        let (sign, n) = (if n < 0 { "-" } else { "" }, n.unsigned_abs());
-        match (n / 100, n % 100) {
-            (whole, 0) => format!("{sign}{whole}"),
-            (whole, part) if part % 10 == 0 => format!("{sign}{whole}.{}", part / 10),
-            (whole, part) => format!("{sign}{whole}.{part:02}"),
-        }
-    };
-    let what = match &place.what {
-        Placed::Step(name) => format!("step {}", g7_syntax::show_name(&name.text)),
-        Placed::Transition(label) => format!("transition {}", g7_syntax::show_name(&label.text)),
-        Placed::TransitionNumber(n) => format!("transition #{n}"),
-        Placed::Comment(text) => format!("comment {}", g7_syntax::show_comment(text)),
-    };
-    format!("{what} at ({}, {})", number(place.x), number(place.y))
-}
-
-/// The group of an item: items of one group stand together without blank lines; group 9 always has
-/// blank lines.
-fn family(item: &Item) -> u8 {
-    match item {
-        Item::Profile(_) | Item::Cycle(..) | Item::Target(..) => 0,
-        Item::Var(_) => 1,
-        Item::Prove(_) => 2,
-        Item::Chart(_)
-        | Item::Action(_)
-        | Item::Section(_)
-        | Item::Function(_)
-        | Item::Pre(..)
-        | Item::Post(..)
-        | Item::Plant(_)
-        | Item::Test(_)
-        | Item::Layout(_) => 9,
     }
 }

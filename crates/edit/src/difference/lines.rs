@@ -1,7 +1,7 @@
 //! The lines of a text: where they begin and end, and what they contain.
 
 use g7_model::{Note, Span};
-use g7_syntax::{Token, TokenKind, tokens};
+use g7_syntax::{Token, TokenKind, show_comment, tokens};
 
 use crate::splice::Splice;
 
@@ -160,6 +160,17 @@ impl<'a> Sheet<'a> {
             return self.put(start, end + rest.len() - rest.trim_start().len(), "");
         }
         self.put(start - (before.len() - before.trim_end().len()), end, "");
+    }
+
+    /// Changes, removes or adds the comment in a header; a new one is written after byte `after`.
+    pub(crate) fn put_comment(&mut self, head: &[Token], after: usize, text: Option<&str>) {
+        let there = head.iter().find(|t| t.kind == TokenKind::Comment);
+        match (there, text) {
+            (Some(t), Some(text)) => self.put(t.start, t.end, show_comment(text)),
+            (Some(t), None) => self.remove_part(t.start, t.end),
+            (None, Some(text)) => self.put(after, after, format!(" {}", show_comment(text))),
+            (None, None) => {}
+        }
     }
 
     /// Inserts lines (each with its indentation) after a part that ends at a byte. `outer` is the

@@ -1,11 +1,13 @@
 //! Finds the least change of the text that makes it say what the draft says.
+//!
+//! Parts that stay keep their text to the byte; new ones are printed by the printer of `g7-syntax`, the
+//! only one there is.
 
 mod chart;
 mod file;
 mod item;
 mod lines;
 mod list;
-mod text;
 
 use std::collections::{BTreeMap, HashMap};
 
@@ -13,9 +15,7 @@ use g7_model::{Chart, ChartItem, Document, Item, Name, Placed, Transition};
 
 use crate::draft::{Draft, is_fresh};
 use crate::splice::{Splice, tidied};
-pub(crate) use item::variable_text;
 pub(crate) use lines::reindent;
-pub(crate) use text::step_list;
 
 use lines::Sheet;
 
