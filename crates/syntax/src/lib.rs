@@ -35,9 +35,8 @@ mod words;
 pub use decode::decode;
 pub use lines::{LineColumn, LineIndex};
 pub use parse::SWITCHES;
-pub use print::{
-    Part, Spelled, chart_items_apart, items_apart, print, print_expr, print_part, print_statements,
-};
+pub use print::part::{Part, chart_items_apart, items_apart, print_part};
+pub use print::{Spelled, print, print_expr, print_statements};
 pub use tokens::{
     Token, TokenKind, Tokens, is_reserved, show_comment, show_name, show_path_name, show_step_name, tokens,
 };

@@ -8,7 +8,7 @@
 mod chart;
 mod expr;
 mod item;
-mod part;
+pub(crate) mod part;
 mod st;
 mod world;
 
@@ -17,7 +17,6 @@ use crate::quote;
 use crate::{LineIndex, words};
 use g7_iec::constant;
 use g7_model::{Document, Expr, Nanos, Note, Span, Stmt};
-pub use part::{Part, Spelled, chart_items_apart, items_apart, print_part};
 
 /// The largest width of a line that is joined from several parts.
 const WIDTH: usize = 100;
@@ -46,6 +45,10 @@ pub fn print_statements(statements: &[Stmt]) -> String {
     printer.statements(statements);
     printer.out
 }
+
+/// The text of a part that keeps its spelling, by its place; further lines are indented as if the part
+/// stood at the left margin. `None` if the part is to be printed.
+pub type Spelled<'a> = &'a dyn Fn(Span) -> Option<String>;
 
 /// The text so far, and the notes that are still to be printed.
 struct Printer<'a> {

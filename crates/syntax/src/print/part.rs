@@ -3,14 +3,10 @@
 //! A gesture changes a few parts; `g7-edit` puts their texts, made here, between those that stay. What
 //! the user typed and what is only moved keeps its spelling: the caller knows it by its place.
 
-use super::Printer;
+use super::{Printer, Spelled};
 use super::{chart, item};
 use crate::lexer::{Lexer, Tok};
 use g7_model::{Action, ChartItem, Item, Name, PlaceAt, Span, StepKind, VarDecl};
-
-/// The text of a part that keeps its spelling, by its place; further lines are indented as if the part
-/// stood at the left margin. `None` if the part is to be printed.
-pub type Spelled<'a> = &'a dyn Fn(Span) -> Option<String>;
 
 /// A part of a document.
 #[derive(Clone, Copy, Debug)]
