@@ -1,7 +1,7 @@
 //! The two ends of a gesture: the file it is given, and the change of the text or the refusal that
 //! comes out.
 //!
-//! It stands below the draft, the gestures and the writer, which all use these types, and above ids
+//! It stands below the draft, the gestures and the difference, which all use these types, and above ids
 //! and splices.
 //!
 //! # What must hold

@@ -21,6 +21,17 @@ pub(crate) struct Wish {
     pages: Option<String>,
     #[serde(default)]
     actions: Option<bool>,
+    /// The number of the drawing that the page has, 0 if none; absent if this one is not to be kept.
+    #[serde(default)]
+    pub(crate) since: Option<u64>,
+}
+
+impl Wish {
+    /// The name under which the drawing is kept; the file stands first, on a line of its own.
+    pub(crate) fn key(&self) -> String {
+        let file = self.file.replace('\n', " ");
+        format!("{file}\n{}\n{:?}\n{:?}\n{:?}", self.chart, self.look, self.pages, self.actions)
+    }
 }
 
 /// The drawing of a chart. Lengths are in px at 100 %.
@@ -31,18 +42,22 @@ pub(crate) struct Drawn {
     /// True if the drawing shows an earlier text, because the present one has syntax errors.
     stale: bool,
     area: [f64; 4],
-    items: Vec<Item>,
+    #[serde(skip)]
+    pub(crate) items: Vec<Item>,
 }
 
+/// A symbol, without its drawing, which is sent only where it is new.
 #[derive(Debug, Default, Serialize)]
-struct Item {
+pub(crate) struct Item {
     id: String,
     part: &'static str,
     area: [f64; 4],
-    svg: String,
-    far: String,
-    from: usize,
-    to: usize,
+    #[serde(skip)]
+    pub(crate) svg: String,
+    #[serde(skip)]
+    pub(crate) far: String,
+    pub(crate) from: usize,
+    pub(crate) to: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
     square: Option<[f64; 4]>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -76,6 +91,21 @@ struct Item {
     initial: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     ends: Option<[String; 2]>,
+}
+
+impl Item {
+    /// True for the same symbol, wherever it stands in the text.
+    pub(crate) fn same(&self, other: &Item) -> bool {
+        // The texts `svg` and `far` are long and were compared before.
+        let Item { id, part, area, svg: _, far: _, from: _, to: _, square, bar, text, at, .. } = self;
+        let Item { name, label, comment, source, priority, steps, .. } = self;
+        let Item { step, expansion, encloses, initial, ends, .. } = self;
+        (id, part, area, square, bar) == (&other.id, &other.part, &other.area, &other.square, &other.bar)
+            && (text, at, name, label) == (&other.text, &other.at, &other.name, &other.label)
+            && (comment, source, priority) == (&other.comment, &other.source, &other.priority)
+            && (steps, step, expansion) == (&other.steps, &other.step, &other.expansion)
+            && (encloses, initial, ends) == (&other.encloses, &other.initial, &other.ends)
+    }
 }
 
 /// Draws a chart of a file.

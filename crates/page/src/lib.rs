@@ -29,6 +29,7 @@ mod page;
 mod places;
 mod problems;
 mod prove;
+mod redrawn;
 mod request;
 mod run;
 mod testing;

@@ -9,6 +9,7 @@ use crate::merge::merge;
 use crate::overview::overview;
 use crate::places::inward;
 use crate::prove::{self, Proof};
+use crate::redrawn::Shown;
 use crate::request::Request;
 use crate::run::{self, Run};
 use crate::{drawing, edit, export, testing};
@@ -22,6 +23,7 @@ pub struct Page {
     runs: BTreeMap<String, Run>,
     /// The answers found so far, by file.
     proofs: BTreeMap<String, Proof>,
+    shown: Shown,
 }
 
 /// Greatest number of open files, and of runs.
@@ -48,6 +50,7 @@ impl Page {
             Request::Close { file } => {
                 self.files.remove(&file);
                 self.proofs.remove(&file);
+                self.shown.forget(&file);
                 ok(&())
             }
             Request::Look { file } => self.look(&file),
@@ -68,7 +71,10 @@ impl Page {
                 ok(&serde_json::json!({ "text": text }))
             }
             Request::Merge { base, mine, theirs } => ok(&merge(&base, &mine, &theirs)?),
-            Request::Drawing(wish) => ok(&drawing::drawing(self.file(&wish.file)?, &wish)?),
+            Request::Drawing(wish) => {
+                let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
+                self.shown.answer(&wish, drawn, |redrawn| ok(redrawn))
+            }
             Request::Forms => ok(&export::forms()),
             Request::Export { file, to } => ok(&export::export(&file, self.file(&file)?, &to)?),
             Request::Logic { file, id } => ok(&language::logic(self.file(&file)?, &id)?),

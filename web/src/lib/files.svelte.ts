@@ -5,6 +5,7 @@ import { local } from './local';
 import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
 import type { Drawing, Edited, Gesture, Look, Splice } from './protocol';
+import { Redraws } from './redrawn';
 import { server } from './server';
 
 /** The origin of a change; a listener that made the change itself can ignore it. */
@@ -60,7 +61,7 @@ export class OpenFile {
   #typed: Typed[] = [];
   /** Ends when every change asked for so far is in the text here and in the worker. */
   #line: Promise<unknown> = Promise.resolve();
-  #drawings = new Map<string, { version: number; drawing: Promise<Drawing> }>();
+  #drawings = new Map<string, { version: number; drawing: Promise<Drawing>; redraws: Redraws }>();
 
   constructor(look: Look, text: string) {
     this.name = look.file;
@@ -137,8 +138,9 @@ export class OpenFile {
     if (known && known.version === this.look.version) return known.drawing;
     const message: Message = { do: 'drawing', file: this.name, chart, look, actions: true };
     if (prefs.pages) message.pages = 'pl7';
-    const drawing = page.call<Drawing>(message);
-    this.#drawings.set(key, { version: this.look.version, drawing });
+    const redraws = known?.redraws ?? new Redraws();
+    const drawing = redraws.ask(message);
+    this.#drawings.set(key, { version: this.look.version, drawing, redraws });
     return drawing;
   }
 

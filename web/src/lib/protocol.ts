@@ -137,6 +137,17 @@ export interface Drawing {
   items: Item[];
 }
 
+/** A drawing as its difference from the one with the number `since`, if that is given. */
+export interface Redrawn extends Omit<Drawing, 'items'> {
+  number?: number;
+  since?: number;
+  /** A number: the symbol with this number there, but for its places in the text. An object with `as`: a symbol
+   * that is drawn as that one. */
+  items: (number | (Item & { as?: number }))[];
+  /** The first and the last place in the text of each symbol that is a number. */
+  places?: number[];
+}
+
 /** Two changes of one text, merged; no text if they contradict each other. */
 export interface Merged {
   text: string | null;
