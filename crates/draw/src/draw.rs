@@ -13,7 +13,7 @@ use crate::symbols::{
     SQUARE, StepShape, TransitionShape, arrow, connector, connector_label, connector_width, double, note,
     step, transition, widest,
 };
-use crate::{Connector, Drawing, End, Item, Options, Part, Placement, Point, Rect, Sizes};
+use crate::{Bar, Connector, Drawing, End, Item, Options, Part, Placement, Point, Rect, Sizes};
 
 /// The symbols of a chart, built round their anchors, and the room that each needs.
 pub(crate) struct Symbols<'a> {
@@ -25,6 +25,11 @@ pub(crate) struct Symbols<'a> {
 /// Measures the room that each symbol of a chart needs.
 pub fn measure(_: &Document, chart: &Chart, options: &Options) -> Sizes {
     Symbols::new(chart, options).sizes
+}
+
+/// The places of the symbols of a chart on one sheet.
+pub fn placed(document: &Document, chart: &Chart, options: &Options) -> Placement {
+    layout(chart, &Symbols::new(chart, options).sizes, places(document, chart))
 }
 
 /// Draws a chart.
@@ -75,8 +80,8 @@ pub(crate) fn inked(document: &Document, chart: &Chart, options: &Options) -> (P
 }
 
 /// The comments in the layout section of a chart, in the order of the text, with their places.
-pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item = (&'a str, &'a PlaceAt)> {
-    comments_of(places(document, chart))
+pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item = (&'a str, Point)> {
+    comments_of(places(document, chart)).map(|(text, p)| (text, corner(p)))
 }
 
 fn comments_of(places: &[PlaceAt]) -> impl Iterator<Item = (&str, &PlaceAt)> {
@@ -86,14 +91,17 @@ fn comments_of(places: &[PlaceAt]) -> impl Iterator<Item = (&str, &PlaceAt)> {
     })
 }
 
+/// The upper left corner of a comment.
+fn corner(p: &PlaceAt) -> Point {
+    Point { x: p.x.clamp(-FAR, FAR), y: p.y.clamp(-FAR, FAR) }
+}
+
 fn notes(places: &[PlaceAt]) -> Vec<Inked> {
-    (0..)
-        .zip(comments_of(places))
-        .map(|(comment, (text, p))| {
-            let place = Point { x: p.x.clamp(-FAR, FAR), y: p.y.clamp(-FAR, FAR) };
-            item(Part::Comment { comment, place }, note(text).moved(place), p.at.0)
-        })
-        .collect()
+    let note = |(comment, (text, p)): (u32, (&str, &PlaceAt))| {
+        let place = corner(p);
+        item(Part::Comment { comment, place }, note(text).moved(place), p.at.0)
+    };
+    (0..).zip(comments_of(places)).map(note).collect()
 }
 
 /// The entries of the layout section for this chart.
@@ -153,17 +161,16 @@ impl<'a> Symbols<'a> {
         let mut items = Vec::new();
         self.links(placement, &mut items);
         let names = Names::new(&self);
+        let mut bars: HashMap<u32, Vec<&Bar>> = HashMap::new();
+        placement.bars.iter().for_each(|b| bars.entry(b.transition).or_default().push(b));
         for (index, c) in (0..).zip(&placement.connectors) {
             items.push(names.connector(index, c, placement, pages));
         }
         for (number, ((t, shape), at)) in (0..).zip(self.transitions.into_iter().zip(&placement.transitions))
         {
             let mut picture = shape.picture.moved(*at);
-            placement
-                .bars
-                .iter()
-                .filter(|b| b.transition == number)
-                .for_each(|b| double(&mut picture, b, *at));
+            let of = bars.get(&number).map_or(&[][..], Vec::as_slice);
+            of.iter().for_each(|b| double(&mut picture, b, *at));
             let (bar, text) = (moved(shape.bar, *at), moved(shape.text, *at));
             items.push(item(Part::Transition { transition: number, bar, text }, picture, t.at.0));
         }

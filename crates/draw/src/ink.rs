@@ -1,8 +1,6 @@
 //! The strokes of a symbol: lines, boxes and texts, each with a CSS class. A symbol is built round
 //! its anchor, moved to its place, and printed last.
 
-use std::fmt::Write as _;
-
 use crate::text::{Line, clean, known, width};
 use crate::{Point, Rect};
 
@@ -121,7 +119,9 @@ impl Picture {
     pub(crate) fn svg(&self) -> String {
         let mut out = String::new();
         if let Some(title) = &self.title {
-            let _ = write!(out, "<title>{}</title>", escape(title));
+            out.push_str("<title>");
+            out.push_str(&escape(title));
+            out.push_str("</title>");
         }
         self.ink.iter().for_each(|i| i.svg(&mut out));
         out
@@ -187,49 +187,74 @@ impl Ink {
     }
 
     fn svg(&self, out: &mut String) {
-        let _ = match self {
-            Ink::Line(class, points) => {
-                let _ = write!(out, "<path class=\"{class}\" d=\"");
-                path(out, points, false);
-                write!(out, "\"/>")
+        let open = |out: &mut String, element: &str, class: &str| {
+            out.push_str(element);
+            out.push_str(class);
+            out.push('"');
+        };
+        match self {
+            Ink::Line(class, points) | Ink::Shape(class, points) => {
+                open(out, "<path class=\"", class);
+                out.push_str(" d=\"");
+                path(out, points, matches!(self, Ink::Shape(..)));
+                out.push_str("\"/>");
             }
-            Ink::Shape(class, points) => {
-                let _ = write!(out, "<path class=\"{class}\" d=\"");
-                path(out, points, true);
-                write!(out, "\"/>")
+            Ink::Rect(class, r) => {
+                open(out, "<rect class=\"", class);
+                lengths(out, &[(" x=\"", r.x), (" y=\"", r.y), (" width=\"", r.w), (" height=\"", r.h)]);
+                out.push_str("/>");
             }
-            Ink::Rect(class, r) => write!(
-                out,
-                "<rect class=\"{class}\" x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/>",
-                Px(r.x),
-                Px(r.y),
-                Px(r.w),
-                Px(r.h)
-            ),
             Ink::Circle(class, at, r) => {
-                write!(
-                    out,
-                    "<circle class=\"{class}\" cx=\"{}\" cy=\"{}\" r=\"{}\"/>",
-                    Px(at.x),
-                    Px(at.y),
-                    Px(*r)
-                )
+                open(out, "<circle class=\"", class);
+                lengths(out, &[(" cx=\"", at.x), (" cy=\"", at.y), (" r=\"", *r)]);
+                out.push_str("/>");
             }
             Ink::Text(class, at, size, text) => {
-                let _ = write!(
-                    out,
-                    "<text class=\"{class}\" x=\"{}\" y=\"{}\" font-size=\"{}\"",
-                    Px(at.x),
-                    Px(at.y),
-                    Px(*size)
-                );
+                open(out, "<text class=\"", class);
+                lengths(out, &[(" x=\"", at.x), (" y=\"", at.y), (" font-size=\"", *size)]);
                 if !known(text) {
-                    let w = Px(width(text, *size));
-                    let _ = write!(out, " textLength=\"{w}\" lengthAdjust=\"spacingAndGlyphs\"");
+                    lengths(out, &[(" textLength=\"", width(text, *size))]);
+                    out.push_str(" lengthAdjust=\"spacingAndGlyphs\"");
                 }
-                write!(out, ">{}</text>", escape(text))
+                out.push('>');
+                out.push_str(&escape(text));
+                out.push_str("</text>");
             }
-        };
+        }
+    }
+}
+
+/// Writes attributes whose values are lengths.
+fn lengths(out: &mut String, attributes: &[(&str, i32)]) {
+    for (name, value) in attributes {
+        out.push_str(name);
+        px(out, *value);
+        out.push('"');
+    }
+}
+
+/// Writes a length in px with at most one decimal. A chart of 1000 steps has 30,000 of them, so no
+/// formatter stands in between.
+fn px(out: &mut String, tenths: i32) {
+    let tenth = (tenths.unsigned_abs() % 10) as u8;
+    let mut rest = tenths.unsigned_abs() / 10;
+    let mut digits = [b'0'; 10];
+    let mut count = 1;
+    for (n, digit) in (1..).zip(&mut digits) {
+        *digit += (rest % 10) as u8;
+        rest /= 10;
+        count = n;
+        if rest == 0 {
+            break;
+        }
+    }
+    if tenths < 0 {
+        out.push('-');
+    }
+    digits.iter().take(count).rev().for_each(|d| out.push(char::from(*d)));
+    if tenth != 0 {
+        out.push('.');
+        out.push(char::from(b'0' + tenth));
     }
 }
 
@@ -238,23 +263,23 @@ pub(crate) struct Px(pub(crate) i32);
 
 impl std::fmt::Display for Px {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let (sign, n) = (if self.0 < 0 { "-" } else { "" }, self.0.unsigned_abs());
-        match n % 10 {
-            0 => write!(f, "{sign}{}", n / 10),
-            tenth => write!(f, "{sign}{}.{tenth}", n / 10),
-        }
+        let mut text = String::new();
+        px(&mut text, self.0);
+        f.write_str(&text)
     }
 }
 
 fn path(out: &mut String, points: &[Point], closed: bool) {
     let mut last: Option<Point> = None;
     for p in points {
-        let _ = match last {
-            None => write!(out, "M{} {}", Px(p.x), Px(p.y)),
-            Some(l) if l.y == p.y => write!(out, "H{}", Px(p.x)),
-            Some(l) if l.x == p.x => write!(out, "V{}", Px(p.y)),
-            Some(_) => write!(out, "L{} {}", Px(p.x), Px(p.y)),
-        };
+        match last {
+            Some(l) if l.y == p.y => coordinate(out, 'H', p.x),
+            Some(l) if l.x == p.x => coordinate(out, 'V', p.y),
+            _ => {
+                coordinate(out, if last.is_none() { 'M' } else { 'L' }, p.x);
+                coordinate(out, ' ', p.y);
+            }
+        }
         last = Some(*p);
     }
     if closed {
@@ -263,7 +288,17 @@ fn path(out: &mut String, points: &[Point], closed: bool) {
 }
 
 fn rect_path(out: &mut String, r: &Rect) {
-    let _ = write!(out, "M{} {}H{}V{}H{}Z", Px(r.x), Px(r.y), Px(r.x + r.w), Px(r.y + r.h), Px(r.x));
+    coordinate(out, 'M', r.x);
+    coordinate(out, ' ', r.y);
+    coordinate(out, 'H', r.x + r.w);
+    coordinate(out, 'V', r.y + r.h);
+    coordinate(out, 'H', r.x);
+    out.push('Z');
+}
+
+fn coordinate(out: &mut String, before: char, value: i32) {
+    out.push(before);
+    px(out, value);
 }
 
 /// Escapes text for SVG.
@@ -292,8 +327,8 @@ mod tests {
     fn lengths_have_at_most_one_decimal() {
         let text = |n| Px(n).to_string();
         assert_eq!(
-            [text(0), text(-5), text(123), text(-120), text(1000)],
-            ["0", "-0.5", "12.3", "-12", "100"]
+            [text(0), text(-5), text(123), text(-120), text(1000), text(i32::MIN)],
+            ["0", "-0.5", "12.3", "-12", "100", "-214748364.8"]
         );
     }
 

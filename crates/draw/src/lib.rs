@@ -32,7 +32,7 @@ mod symbols;
 mod text;
 
 pub use chronogram::{Chronogram, Edge, Lane, LaneKind, chronogram_svg};
-pub use draw::{comments, draw, draw_all, measure};
+pub use draw::{comments, draw, draw_all, measure, placed};
 pub use drawing::{Drawing, Item, Part};
 pub use drawio::{drawio, shapes};
 pub use geometry::{Extent, Point, Rect, U};

@@ -4,7 +4,7 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use g7_draw::{Options, Part};
+use g7_draw::Options;
 use g7_edit::{Edit, Gesture, ItemId};
 use g7_model::Document;
 
@@ -34,20 +34,12 @@ fn standing(document: &Document) -> impl Fn(&ItemId) -> Option<(i32, i32)> {
 /// The anchors of the symbols of a chart, in hundredths of u, by id.
 fn anchors(document: &Document, chart: &str) -> HashMap<ItemId, (i32, i32)> {
     let Some(chart) = document.charts().find(|c| *c.name.text == *chart) else { return HashMap::new() };
-    let names: Vec<&str> = chart.steps().map(|s| &*s.name.text).collect();
     let name = &*chart.name.text;
-    let drawing = g7_draw::draw(document, chart, &Options::default());
-    let anchor = |item: &g7_draw::Item| match item.part {
-        Part::Step { step, square } => {
-            let id = ItemId::step(name, *names.get(step as usize)?);
-            Some((id, (square.x + square.w / 2, square.y)))
-        }
-        Part::Transition { transition, bar, .. } => {
-            let id = ItemId::transition(name, transition as usize);
-            Some((id, (bar.x + bar.w / 2, bar.y + bar.h / 2)))
-        }
-        Part::Comment { comment, place } => Some((ItemId::note(name, comment as usize), (place.x, place.y))),
-        Part::Action { .. } | Part::Link { .. } | Part::Connector { .. } | Part::Text => None,
-    };
-    drawing.items.iter().filter_map(anchor).collect()
+    let placement = g7_draw::placed(document, chart, &Options::default());
+    let steps = chart.steps().map(|s| ItemId::step(name, &*s.name.text)).zip(placement.steps);
+    let transitions = (0..).map(|n| ItemId::transition(name, n)).zip(placement.transitions);
+    let notes = g7_draw::comments(document, chart).map(|(_, at)| at);
+    let notes = (0..).map(|n| ItemId::note(name, n)).zip(notes);
+    // The anchor of a symbol is the point round which it is built.
+    steps.chain(transitions).chain(notes).map(|(id, at)| (id, (at.x, at.y))).collect()
 }
