@@ -3,10 +3,11 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 seconds=${1:-60}
-mkdir -p fuzz/corpus/{text,fmu,run,restore,jgrafchart,classicladder,controlexpert,s7graph,l5x,xmi,plcopen,iectext,edit,page}
+mkdir -p fuzz/corpus/{text,fmu,run,restore,jgrafchart,classicladder,controlexpert,s7graph,l5x,xmi,plcopen,iectext,edit,page,tree}
 for f in $(git ls-files 'examples/*.g7' 'tests/check/*.g7'); do
     cp "$f" "fuzz/corpus/text/$(echo "$f" | tr / _)"
     cp "$f" "fuzz/corpus/run/$(echo "$f" | tr / _)"
+    { cat "$f"; printf -- '----\n40 0 x\n90 1 \n60 5 {\\n\n200 0 \\n  step 9\n'; } > "fuzz/corpus/tree/$(echo "$f" | tr / _)"
     { cat "$f"; printf '\0\5\0\1\0\0\0\0\0\0\0'; } > "fuzz/corpus/restore/$(echo "$f" | tr / _)"
 done
 for f in $(git ls-files 'tests/interchange/iectext/*.st'); do
@@ -35,6 +36,6 @@ awk '
     END { for (k = 1; k <= n; k++) printf "%s----\n%s", text[k], said[k] > "fuzz/corpus/edit/case-" k }
 ' tests/edit/*.md
 cp fuzz/stories/* fuzz/corpus/page/
-for target in text fmu jgrafchart classicladder controlexpert s7graph l5x xmi plcopen iectext run restore tables edit page; do
+for target in text fmu jgrafchart classicladder controlexpert s7graph l5x xmi plcopen iectext run restore tables edit page tree; do
     cargo fuzz run --sanitizer none "$target" -- -max_total_time="$seconds" -max_len=65536 -timeout=20 -verbosity=0
 done

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use g7_edit::{History, Splice, spliced};
+use g7_edit::{Edit, History, Splice, spliced};
 use g7_model::{Document, FileId, Problem, Severity, Span};
 use g7_rig::Source;
 
@@ -81,22 +81,41 @@ impl File {
 
     /// Makes a change and records it for undo; typed characters are joined to words.
     pub fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
-        let text = spliced(self.text(), splices).ok_or("these places are none of the text")?;
-        if text.len() > MOST {
+        self.recorded(splices, typed)?;
+        self.splice(splices)
+    }
+
+    /// Makes the change of a gesture. What the gesture has read of the new text is not read again.
+    pub fn make(&mut self, edit: &mut Edit) -> Result<(), String> {
+        self.recorded(&edit.splices, false)?;
+        match edit.read.take() {
+            Some(read) => {
+                self.source.put_tree(*read);
+                self.changed();
+                Ok(())
+            }
+            None => self.splice(&edit.splices),
+        }
+    }
+
+    /// Records a change that is about to be made.
+    fn recorded(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
+        let more: usize = splices.iter().map(|s| s.insert.len()).sum();
+        let less: usize = splices.iter().map(|s| s.end.saturating_sub(s.start)).sum();
+        if (self.text().len() + more).saturating_sub(less) > MOST {
             return Err("the text would be too large for the editor".to_owned());
         }
         if !self.history.record(&self.source.text, splices, typed) {
             return Err("these places are none of the text".to_owned());
         }
-        self.set_text(text);
         Ok(())
     }
 
     /// Takes another text, which an editor with an undo of its own has made.
     pub fn take(&mut self, text: String) -> Result<(), String> {
         fits("the text", &text)?;
-        self.set_text(text);
-        Ok(())
+        let splice = difference(self.text(), &text);
+        self.splice(&[splice])
     }
 
     /// Undoes the last change, or redoes it; returns the splices.
@@ -104,8 +123,7 @@ impl File {
         let splices = if back { self.history.undo() } else { self.history.redo() };
         let nothing = if back { "nothing to undo" } else { "nothing to redo" };
         let splices = splices.ok_or(nothing)?;
-        let text = spliced(self.text(), &splices).ok_or("the history does not fit the text")?;
-        self.set_text(text);
+        self.splice(&splices).map_err(|_| "the history does not fit the text")?;
         Ok(splices)
     }
 
@@ -115,10 +133,18 @@ impl File {
         spliced(self.text(), &splices)
     }
 
-    fn set_text(&mut self, text: String) {
-        // The form was decided when the file was opened: an imported file keeps its name, but its text
-        // is .g7 text now.
-        self.source = Source::native(&self.source.name, text.into_bytes(), 0);
+    /// Changes the text. The form was decided when the file was opened: an imported file keeps its name,
+    /// but its text is .g7 text now.
+    fn splice(&mut self, splices: &[Splice]) -> Result<(), String> {
+        let edits: Vec<_> = splices.iter().map(|s| (s.start..s.end, s.insert.as_str())).collect();
+        if !self.source.change(&edits) {
+            return Err("these places are none of the text".to_owned());
+        }
+        self.changed();
+        Ok(())
+    }
+
+    fn changed(&mut self) {
         self.positions = Arc::new(Positions::new(&self.source.text));
         self.version += 1;
         self.judge();
@@ -126,7 +152,8 @@ impl File {
 
     /// The file in the form that gestures need.
     pub fn as_edited(&self) -> g7_edit::Source<'_> {
-        g7_edit::Source { text: self.text(), document: &self.source.document, clean: self.is_clean() }
+        let Source { text, document, marks, .. } = &self.source;
+        g7_edit::Source { text, document, clean: self.is_clean(), marks: Some(marks) }
     }
 
     /// A place in code units.
@@ -180,6 +207,20 @@ impl File {
 /// Refuses a text that is too long, under the name of what it belongs to.
 fn fits(what: &str, text: &str) -> Result<(), String> {
     if text.len() > MOST { Err(format!("{what} is too large for the editor")) } else { Ok(()) }
+}
+
+/// The one change that leads from a text to another: what lies between their common beginning and their
+/// common end.
+fn difference(old: &str, new: &str) -> Splice {
+    let same = old.bytes().zip(new.bytes()).take_while(|(a, b)| a == b).count();
+    let start = floor(old, same);
+    let most = old.len().min(new.len()) - start;
+    let ends = old.bytes().rev().zip(new.bytes().rev()).take(most);
+    let mut tail = ends.take_while(|(a, b)| a == b).count();
+    while !old.is_char_boundary(old.len() - tail) {
+        tail -= 1;
+    }
+    Splice::new(start, old.len() - tail, new.get(start..new.len() - tail).unwrap_or_default())
 }
 
 /// The nearest byte before a place, or at it, at which a character begins.

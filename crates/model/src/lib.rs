@@ -27,6 +27,7 @@ mod functions;
 mod name;
 mod nanos;
 mod operators;
+pub mod places;
 mod plant;
 mod problem;
 mod qualifier;

@@ -1,7 +1,10 @@
 //! Source files: bytes, document and problems; and the conversion from bytes to lines.
 
+use std::ops::Range;
+
 use g7_exchange::Format;
 use g7_model::{Document, FileId, Item, Problem, Scenario, Severity, Span};
+use g7_syntax::{Marks, Tree};
 
 /// A file that was read.
 #[derive(Debug)]
@@ -19,6 +22,8 @@ pub struct Source {
     pub problems: Vec<Problem>,
     /// The foreign format of the file, if it is not .g7.
     pub format: Option<&'static Format>,
+    /// What a change of the text needs in order to read only a part of it.
+    pub marks: Marks,
     starts: Vec<usize>,
 }
 
@@ -30,22 +35,58 @@ impl Source {
         let (document, problems) = format
             .and_then(|format| format.read(&bytes, FileId(id)))
             .unwrap_or_else(|| g7_syntax::parse_bytes(&bytes, FileId(id)));
-        Source { document, problems, format, ..Source::plain(name, bytes) }
+        let marks = Marks::none(FileId(id));
+        Source { document, problems, format, marks, ..Source::plain(name, bytes) }
     }
 
     /// Reads a .g7 text, whatever its name is.
     pub fn native(name: &str, bytes: Vec<u8>, id: u32) -> Source {
         let (document, problems) = g7_syntax::parse_bytes(&bytes, FileId(id));
-        Source { document, problems, ..Source::plain(name, bytes) }
+        Source { document, problems, marks: Marks::none(FileId(id)), ..Source::plain(name, bytes) }
     }
 
     /// A file that is no chart, for the places of its problems.
     pub fn plain(name: &str, bytes: Vec<u8>) -> Source {
         let text = same_length(&bytes);
-        let starts = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
+        let starts = starts(&text);
         let name = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
         let (document, problems) = (Document::default(), Vec::new());
-        Source { name, text, bytes, document, problems, format: None, starts }
+        let marks = Marks::default();
+        Source { name, text, bytes, document, problems, format: None, marks, starts }
+    }
+
+    /// Changes the text of a .g7 file, each range of bytes to the words, and reads what the change touches.
+    /// The ranges are in order and do not overlap. Returns false if they do not fit the text, or if the file
+    /// is not UTF-8 text.
+    pub fn change(&mut self, edits: &[(Range<usize>, &str)]) -> bool {
+        if self.bytes != self.text.as_bytes() {
+            return false;
+        }
+        let mut tree = self.take_tree();
+        let fits = tree.change(edits);
+        self.put_tree(tree);
+        fits
+    }
+
+    fn take_tree(&mut self) -> Tree {
+        Tree {
+            text: std::mem::take(&mut self.text),
+            document: std::mem::take(&mut self.document),
+            problems: std::mem::take(&mut self.problems),
+            marks: std::mem::take(&mut self.marks),
+        }
+    }
+
+    /// Takes the text of a .g7 file as somebody else has read it.
+    pub fn put_tree(&mut self, tree: Tree) {
+        let Tree { text, document, problems, marks } = tree;
+        self.starts = starts(&text);
+        self.bytes.clear();
+        self.bytes.extend_from_slice(text.as_bytes());
+        (self.text, self.document, self.problems, self.marks) = (text, document, problems, marks);
+        // As `parse_bytes` has them.
+        self.problems.sort_by_key(|p| p.at.start);
+        self.format = None;
     }
 
     /// True if one of the problems is an error.
@@ -98,6 +139,11 @@ impl Source {
     }
 }
 
+/// The first bytes of the lines.
+fn starts(text: &str) -> Vec<usize> {
+    std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect()
+}
+
 /// Decodes text so that each byte stays one byte, because spans count the bytes of the file.
 fn same_length(bytes: &[u8]) -> String {
     let mut text = String::with_capacity(bytes.len());
@@ -121,6 +167,25 @@ mod tests {
         let s = source(b"ab\xff\xfe\n\xc3\xa5x");
         assert_eq!(s.text.len(), 8);
         assert_eq!(s.position(7), (2, 2), "one character of two bytes before it");
+    }
+
+    #[test]
+    fn a_changed_source_is_that_of_the_new_text() {
+        let text = "input a : BOOL\nchart G {\n  initial step 0\n  0 -> 1 when a\n  step 1\n}\n";
+        let mut changed = source(text.as_bytes());
+        let at = text.find("when").expect("it is there");
+        for (edits, wanted) in [
+            (vec![(0..0, "// é\n"), (at..at, "\n")], true),
+            (vec![(9_000..9_000, "x")], false),
+            (vec![(3..4, "")], false),
+            (vec![(0..6, "")], true),
+        ] {
+            assert_eq!(changed.change(&edits), wanted, "{edits:?}");
+            let whole = Source::native("a.g7", changed.text.clone().into_bytes(), 0);
+            let shown = |s: &Source| format!("{:?}", (&s.bytes, &s.document, &s.problems, &s.starts));
+            assert_eq!(shown(&changed), shown(&whole));
+        }
+        assert!(!source(b"ab\xff").change(&[(0..1, "")]), "no text");
     }
 
     #[test]

@@ -7,6 +7,7 @@
 use crate::problems::Problems;
 use g7_iec::constant;
 use g7_model::{FileId, Fix, Note, Problem, Span, codes};
+use std::{cell::Cell, rc::Rc};
 
 /// Kinds of token.
 #[derive(Clone, Copy, PartialEq, Eq, Debug)]
@@ -74,7 +75,7 @@ pub(crate) enum Tok {
 }
 
 /// One token.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, PartialEq, Eq, Debug)]
 pub(crate) struct Token {
     pub(crate) kind: Tok,
     pub(crate) start: u32,
@@ -91,6 +92,8 @@ pub(crate) struct Lexer<'a> {
     pos: usize,
     last: Tok,
     last_end: usize,
+    /// One past the last byte of all tokens read, also of those read by lexers that look ahead.
+    pub(crate) seen: Rc<Cell<usize>>,
     pub(crate) notes: Vec<Note>,
     pub(crate) problems: Problems,
 }
@@ -119,8 +122,8 @@ impl Tok {
 impl<'a> Lexer<'a> {
     /// A lexer that starts at a byte of the text.
     pub(crate) fn new(text: &'a str, file: FileId, pos: usize) -> Lexer<'a> {
-        let problems = Problems::default();
-        Lexer { text, file, pos, last: Tok::Bad, last_end: usize::MAX, notes: Vec::new(), problems }
+        let (notes, problems) = (Vec::new(), Problems::default());
+        Lexer { text, file, pos, last: Tok::Bad, last_end: usize::MAX, seen: Rc::default(), notes, problems }
     }
 
     /// A lexer that looks ahead from the end of a token and changes nothing here.
@@ -128,6 +131,7 @@ impl<'a> Lexer<'a> {
         let mut other = Lexer::new(self.text, self.file, token.end as usize);
         other.last = token.kind;
         other.last_end = token.end as usize;
+        other.seen = Rc::clone(&self.seen);
         other
     }
 
@@ -144,6 +148,7 @@ impl<'a> Lexer<'a> {
         }
         self.last = kind;
         self.last_end = self.pos;
+        self.seen.set(self.seen.get().max(self.pos));
         Token { kind, start: offset(start), end: offset(self.pos), newline }
     }
 

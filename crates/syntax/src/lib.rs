@@ -30,6 +30,7 @@ mod print;
 mod problems;
 mod quote;
 mod tokens;
+mod tree;
 mod words;
 
 pub use decode::decode;
@@ -40,6 +41,7 @@ pub use print::{Spelled, print, print_expr, print_statements};
 pub use tokens::{
     Token, TokenKind, Tokens, is_reserved, show_comment, show_name, show_path_name, show_step_name, tokens,
 };
+pub use tree::{Marks, Tree};
 
 use g7_model::{Document, Expr, ExprKind, FileId, Place, Problem, Span, Stmt};
 use parse::Parser;

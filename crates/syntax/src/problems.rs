@@ -6,7 +6,7 @@ use g7_model::{Problem, Span, codes};
 const MOST: usize = 100;
 
 /// Problems found so far.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Problems {
     list: Vec<Problem>,
     overflow: Option<Span>,
@@ -20,6 +20,27 @@ impl Problems {
         } else if self.overflow.is_none() {
             self.overflow = Some(at);
         }
+    }
+
+    /// Goes on with problems found before.
+    pub(crate) fn of(list: Vec<Problem>) -> Problems {
+        Problems { list, overflow: None }
+    }
+
+    /// Adds problems that were found before; `None` if there are then too many.
+    pub(crate) fn and(mut self, more: Vec<Problem>) -> Option<Problems> {
+        self.list.extend(more);
+        (self.overflow.is_none() && self.list.len() <= MOST).then_some(self)
+    }
+
+    /// How many there are.
+    pub(crate) fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Those from a number on, which are removed; `None` if there were too many.
+    pub(crate) fn split_off(&mut self, at: usize) -> Option<Vec<Problem>> {
+        (self.overflow.is_none() && at <= self.list.len()).then(|| self.list.split_off(at))
     }
 
     /// True if no more problems are kept.

@@ -1,6 +1,7 @@
 //! Charts: steps and transitions.
 
 use super::Parser;
+use super::marks::Level;
 use crate::lexer::Tok;
 use g7_model::{
     Chart, ChartItem, ChartKind, Expr, ExprKind, Fix, Name, Nanos, Place, Problem, Span, Step, StepKind,
@@ -47,9 +48,13 @@ impl Parser<'_> {
         Some(self.duration("the period, a duration")).filter(|_| kind == ChartKind::Chart)
     }
 
-    fn chart_items(&mut self, items: &mut Vec<ChartItem>, open: Span) {
+    /// The items up to the end of the chart, or to where the rest is known.
+    pub(super) fn chart_items(&mut self, items: &mut Vec<ChartItem>, open: Span) {
         loop {
             self.skip_semis();
+            if self.mark(items.len(), Level::Chart(open)) {
+                return;
+            }
             match self.cur.kind {
                 Tok::RBrace => {
                     self.bump();

@@ -1,6 +1,7 @@
 //! A file and its items.
 
 use super::Parser;
+use super::marks::Level;
 use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
@@ -12,9 +13,15 @@ impl Parser<'_> {
     /// The whole file.
     pub(crate) fn document(&mut self) -> Document {
         let mut items = Vec::new();
+        self.items(&mut items);
+        Document { items, notes: Vec::new() }
+    }
+
+    /// The items up to the end of the text, or to where the rest is known.
+    pub(super) fn items(&mut self, items: &mut Vec<Item>) {
         loop {
             self.skip_semis();
-            if self.at(Tok::End) {
+            if self.at(Tok::End) || self.mark(items.len(), Level::File) {
                 break;
             }
             let start = self.cur.start;
@@ -26,7 +33,6 @@ impl Parser<'_> {
                 None => self.lost_item(start),
             }
         }
-        Document { items, notes: Vec::new() }
     }
 
     fn item(&mut self) -> Option<Item> {

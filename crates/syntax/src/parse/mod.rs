@@ -13,6 +13,7 @@ mod il;
 pub(crate) mod ladder;
 mod lines;
 mod literal;
+pub(crate) mod marks;
 mod plant;
 mod scenario;
 mod st;
@@ -52,6 +53,8 @@ pub(crate) struct Parser<'a> {
     told: Option<u32>,
     /// A misspelt word: its place, and the word it is read as.
     corrected: Option<(u32, &'static str)>,
+    /// Where a later reading can begin and end; only for a [`crate::Tree`].
+    marks: Option<Box<marks::Marks>>,
 }
 
 impl<'a> Parser<'a> {
@@ -79,6 +82,7 @@ impl<'a> Parser<'a> {
             prefixes,
             told: None,
             corrected: None,
+            marks: None,
         }
     }
 

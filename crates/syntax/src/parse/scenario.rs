@@ -1,11 +1,12 @@
 //! Tests, properties and the layout.
 
 use super::Parser;
+use super::marks::Level;
 use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario,
+    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, Span,
     TestStmt, TestStmtKind, codes, words,
 };
 
@@ -338,14 +339,24 @@ impl Parser<'_> {
         let open = self.here();
         let mut places = Vec::new();
         if self.expect(Tok::LBrace, "`{` and the places") {
-            self.skip_semis();
-            while let Some(place) = self.line(Parser::place_at) {
-                places.push(place);
-                self.skip_semis();
-            }
-            self.close(Tok::RBrace, "`}` after the places", open);
+            self.places(&mut places, open);
         }
         Layout { chart, places, at: self.since(start).into() }
+    }
+
+    /// The places up to the end of the layout, or to where the rest is known.
+    pub(super) fn places(&mut self, places: &mut Vec<PlaceAt>, open: Span) {
+        loop {
+            self.skip_semis();
+            if self.mark(places.len(), Level::Layout(open)) {
+                return;
+            }
+            match self.line(Parser::place_at) {
+                Some(place) => places.push(place),
+                None => break,
+            }
+        }
+        self.close(Tok::RBrace, "`}` after the places", open);
     }
 
     fn place_at(&mut self) -> Option<PlaceAt> {
