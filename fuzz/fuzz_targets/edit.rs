@@ -18,7 +18,7 @@ fuzz_target!(|bytes: &[u8]| {
         let Ok(gesture) = serde_json::from_str::<Gesture>(line) else { continue };
         let (document, problems) = g7_syntax::parse(&text, FileId(0));
         let clean = problems.is_empty();
-        let source = Source { text: &text, document: &document, clean };
+        let source = Source { text: &text, document: &document, problems: &problems, marks: None };
         // Symbols have places derived from the numbers in their names; some have none.
         let stands = |id: &g7_edit::ItemId| {
             let number: i32 = id.to_string().rsplit('/').next()?.parse().ok()?;

@@ -8,7 +8,8 @@
 //!
 //! A refused gesture leaves nothing but a sentence for the user.
 
-use g7_model::Document;
+use g7_model::{Document, Problem, Severity};
+use g7_syntax::{Marks, Tree};
 
 use crate::id::ItemId;
 use crate::splice::Splice;
@@ -20,8 +21,17 @@ pub struct Source<'a> {
     pub text: &'a str,
     /// Its document, as `g7_syntax::parse` gave it.
     pub document: &'a Document,
+    /// The problems of its syntax.
+    pub problems: &'a [Problem],
+    /// What a change of the text needs in order to read only a part of it.
+    pub marks: Option<&'a Marks>,
+}
+
+impl Source<'_> {
     /// True if the text has no syntax errors.
-    pub clean: bool,
+    pub(crate) fn is_clean(&self) -> bool {
+        self.problems.iter().all(|p| p.severity() != Severity::Error)
+    }
 }
 
 /// A change of the text.
@@ -35,6 +45,8 @@ pub struct Edit {
     pub begin: Option<ItemId>,
     /// Sentences for the user about the change.
     pub told: Vec<String>,
+    /// The text after the change with all that was read of it, if it was read.
+    pub read: Option<Box<Tree>>,
 }
 
 /// The reason why a gesture was refused: a sentence for the user.

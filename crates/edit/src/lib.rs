@@ -26,6 +26,7 @@ mod gestures;
 mod history;
 mod id;
 mod needs;
+mod reading;
 mod splice;
 
 pub use change::{Anchors, Edit, Refusal, Source};
@@ -35,10 +36,11 @@ pub use history::History;
 pub use id::{End, ItemId, NoId, Part};
 pub use splice::{Splice, spliced};
 
-use g7_model::{ChartItem, Document, FileId, Item};
+use g7_syntax::Tree;
 
 use change::refuse;
 use draft::Draft;
+use reading::{judge, read, unwritable};
 
 /// Executes a gesture; places of symbols are known only from the layout section of the text.
 pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
@@ -53,7 +55,7 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
             None => refuse("the change does not fit the text"),
         };
     }
-    if !source.clean {
+    if !source.is_clean() {
         return refuse(
             "the text has syntax errors; correct them first (the drawing shows the chart before them)",
         );
@@ -74,17 +76,27 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     gestures::carry_out(&mut draft, gesture)?;
     difference::settle(&mut draft);
     let splices = difference::difference(&draft);
-    let after = spliced(source.text, &splices).ok_or_else(unwritable)?;
-    judge(&after, &draft.doc)?;
-    let splices = with_besides(source.text, splices, std::mem::take(&mut draft.besides))?;
+    let mut tree = read(source, &splices).ok_or_else(unwritable)?;
+    judge(&tree, &draft.doc)?;
+    let splices = match std::mem::take(&mut draft.besides) {
+        besides if besides.is_empty() => splices,
+        besides => {
+            let splices = with_besides(splices, besides);
+            tree = read(source, &splices).ok_or_else(unwritable)?;
+            if let Some(problem) = tree.problems.first() {
+                return refuse(format!("this cannot be written: {problem}"));
+            }
+            splices
+        }
+    };
     let select = draft.select.iter().filter_map(|m| draft.resolved(m)).collect();
     let begin = draft.begin.as_ref().and_then(|m| draft.resolved(m));
-    Ok(Edit { splices, select, begin, told: draft.told })
+    Ok(Edit { splices, select, begin, told: draft.told, read: Some(Box::new(tree)) })
 }
 
 /// Renames the part that is named at a byte of the text, wherever it is used.
 pub fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
-    if !source.clean {
+    if !source.is_clean() {
         return refuse("the text has syntax errors; correct them first");
     }
     gestures::rename_at(source, at, to)
@@ -93,55 +105,21 @@ pub fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refus
 /// Executes two gestures as one change.
 fn in_two(source: &Source<'_>, first: &Gesture, second: &Gesture) -> Result<Edit, Refusal> {
     let before = apply(source, first)?;
-    let text = spliced(source.text, &before.splices).ok_or_else(unwritable)?;
-    let (document, problems) = g7_syntax::parse(&text, FileId(0));
-    let between = Source { text: &text, document: &document, clean: problems.is_empty() };
-    let after = apply(&between, second)?;
+    let tree = match before.read {
+        Some(tree) => *tree,
+        None => read(source, &before.splices).ok_or_else(unwritable)?,
+    };
+    let Tree { text, document, problems, marks } = &tree;
+    let after = apply(&Source { text, document, problems, marks: Some(marks) }, second)?;
     let splices = splice::composed(source.text, &before.splices, &after.splices).ok_or_else(unwritable)?;
     Ok(Edit { splices, ..after })
 }
 
-/// Adds changes of names; the resulting text must have no syntax errors.
-fn with_besides(text: &str, mut splices: Vec<Splice>, besides: Vec<Splice>) -> Result<Vec<Splice>, Refusal> {
-    if besides.is_empty() {
-        return Ok(splices);
-    }
+/// Adds changes of names.
+fn with_besides(mut splices: Vec<Splice>, besides: Vec<Splice>) -> Vec<Splice> {
     let free = |s: &Splice| !splices.iter().any(|o| s.start < o.end && o.start < s.end);
     let besides: Vec<Splice> = besides.into_iter().filter(free).collect();
     splices.extend(besides);
     splices.sort_by_key(|s| (s.start, s.end));
-    let after = spliced(text, &splices).ok_or_else(unwritable)?;
-    match g7_syntax::parse(&after, FileId(0)).1.first() {
-        Some(problem) => refuse(format!("this cannot be written: {problem}")),
-        None => Ok(splices),
-    }
-}
-
-/// Checks that the text gives exactly the intended document.
-fn judge(text: &str, meant: &Document) -> Result<(), Refusal> {
-    let (read, problems) = g7_syntax::parse(text, FileId(0));
-    if let Some(problem) = problems.first() {
-        return refuse(format!("this cannot be written: {problem}"));
-    }
-    if plain(read).items != plain(meant.clone()).items {
-        return Err(unwritable());
-    }
-    Ok(())
-}
-
-/// Removes differences without meaning, such as the empty braces of a step.
-fn plain(mut doc: Document) -> Document {
-    for item in &mut doc.items {
-        let Item::Chart(chart) = item else { continue };
-        for item in &mut chart.items {
-            if let ChartItem::Step(step) = item {
-                step.braces = !step.actions.is_empty();
-            }
-        }
-    }
-    doc
-}
-
-fn unwritable() -> Refusal {
-    Refusal::new("this cannot be written into the text as it stands here; change the text itself")
+    splices
 }

@@ -71,7 +71,7 @@ fn stands(id: &ItemId) -> Option<(i32, i32)> {
 
 fn run(text: &str, gesture: &Gesture) -> Result<Edit, String> {
     let (document, problems) = g7_syntax::parse(text, FileId(0));
-    let source = Source { text, document: &document, clean: problems.is_empty() };
+    let source = Source { text, document: &document, problems: &problems, marks: None };
     apply_placed(&source, gesture, &stands).map_err(|e| e.to_string())
 }
 
@@ -180,7 +180,7 @@ fn each_gesture_has_a_case() {
 fn a_copy_has_what_was_chosen_and_no_links_to_the_rest() {
     let text = "chart G {\n  initial step 1 \"one\"\n  step 2 { N a }\n  step 3\n  1 -> 2 when a -> 3 when b\n  3 -> 1 when c\n}\n";
     let (document, _) = g7_syntax::parse(text, FileId(0));
-    let source = Source { text, document: &document, clean: true };
+    let source = Source { text, document: &document, problems: &[], marks: None };
     let ids = |list: &[&str]| list.iter().map(|t| t.parse().expect("an id")).collect::<Vec<ItemId>>();
     for (chosen, wanted) in [
         (&["G/s/2", "G/s/3"][..], "chart G {\n  step 2 { N a }\n  step 3\n\n  2 -> 3 when b\n}\n"),

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 
 use g7_edit::{Edit, Gesture, History, Refusal, Source, apply_placed, copy, spliced};
 use g7_model::{Document, FileId, StepKind};
+use g7_syntax::Tree;
 use serde_json::{Value, json};
 
 /// A pseudo-random generator (SplitMix64).
@@ -73,9 +74,17 @@ fn read(text: &str) -> (Document, bool) {
 }
 
 fn run(text: &str, gesture: &Gesture) -> Result<Edit, Refusal> {
-    let (document, clean) = read(text);
-    let source = Source { text, document: &document, clean };
-    apply_placed(&source, gesture, &|id| Some((id.to_string().len() as i32 * 100, 300)))
+    let Tree { text, document, problems, marks } = &Tree::read(text.to_owned(), FileId(0));
+    let source = Source { text, document, problems, marks: Some(marks) };
+    let edit = apply_placed(&source, gesture, &|id| Some((id.to_string().len() as i32 * 100, 300)))?;
+    // What the gesture hands on is what a reading of the new text gives.
+    if let Some(read) = &edit.read {
+        let whole = Tree::read(spliced(text, &edit.splices).expect("it fits"), FileId(0));
+        assert_eq!(read.text, whole.text);
+        let shown = |t: &Tree| format!("{:?}\n{:?}", t.document, t.problems);
+        assert_eq!(shown(read), shown(&whole), "{gesture:?} in\n{text}");
+    }
+    Ok(edit)
 }
 
 const NAMES: &[&str] = &["", "1", "12", "Fill", "a b", "step", "on", "a/b>c:d%", "x`y", "Vent på"];
@@ -199,8 +208,8 @@ fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
             json!({"g": "align", "ids": ids(rng, doc), "how": how})
         }
         28 => {
-            let (document, clean) = read(text);
-            let source = Source { text, document: &document, clean };
+            let (document, _) = read(text);
+            let source = Source { text, document: &document, problems: &[], marks: None };
             let chosen: Vec<g7_edit::ItemId> = serde_json::from_value(ids(rng, doc)).unwrap_or_default();
             json!({"g": "paste", "chart": chart(rng, doc), "text": copy(&source, &chosen), "at": [40, 50]})
         }
@@ -394,8 +403,8 @@ fn nothing_makes_it_panic() {
 fn a_macro_step_brings_its_expansion_along() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples/structure/macro-step.g7");
     let text = std::fs::read_to_string(root).expect("readable");
-    let (document, clean) = read(&text);
-    let source = Source { text: &text, document: &document, clean };
+    let (document, _) = read(&text);
+    let source = Source { text: &text, document: &document, problems: &[], marks: None };
     let part = copy(&source, &[g7_edit::ItemId::step("Station", "M3")]);
     let (doc, clean) = read(&part);
     assert!(clean);

@@ -152,8 +152,8 @@ impl File {
 
     /// The file in the form that gestures need.
     pub fn as_edited(&self) -> g7_edit::Source<'_> {
-        let Source { text, document, marks, .. } = &self.source;
-        g7_edit::Source { text, document, clean: self.is_clean(), marks: Some(marks) }
+        let Source { text, document, problems, marks, .. } = &self.source;
+        g7_edit::Source { text, document, problems, marks: Some(marks) }
     }
 
     /// A place in code units.

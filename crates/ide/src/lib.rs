@@ -15,7 +15,7 @@
 //! # What must hold
 //!
 //! - No text and no place makes a query panic: a place beyond the end is the end.
-//! - A query never changes the file. [`File::change`] and [`File::travel`] alone do.
+//! - A query never changes the file. [`File::change`], [`File::make`], [`File::take`] and [`File::travel`] alone do.
 //! - If the text has syntax errors, names come from the latest text without them.
 #![forbid(unsafe_code)]
 

@@ -23,7 +23,7 @@ pub(crate) struct Edited {
 
 /// Executes a gesture.
 pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edited, String> {
-    let edit = draft(file, gesture)?;
+    let mut edit = draft(file, gesture)?;
     if edit.splices.is_empty() {
         return Ok(Edited {
             overview: overview(name, file),
@@ -34,7 +34,7 @@ pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edi
         });
     }
     let splices = outward(file, &edit.splices);
-    file.change(&edit.splices, false)?;
+    file.make(&mut edit)?;
     Ok(Edited {
         overview: overview(name, file),
         splices,

@@ -88,7 +88,8 @@ impl Tree {
 
     /// The same changes, with those that are near each other as one.
     fn joined(&self, edits: &[(Range<usize>, &str)]) -> Vec<(Range<usize>, String)> {
-        let near = if edits.len() > MOST { usize::MAX } else { NEAR };
+        let one = edits.len() > MOST || self.marks.found.is_none();
+        let near = if one { usize::MAX } else { NEAR };
         let mut out: Vec<(Range<usize>, String)> = Vec::new();
         for (range, words) in edits {
             match out.last_mut() {

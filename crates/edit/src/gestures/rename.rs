@@ -6,12 +6,13 @@
 
 use g7_compile::references::{Use, Written};
 use g7_compile::{Definition, References, references};
-use g7_model::{FileId, Item, Span};
-use g7_syntax::{show_name, show_path_name, show_step_name};
+use g7_model::{Item, Span};
+use g7_syntax::{Tree, show_name, show_path_name, show_step_name};
 
 use crate::change::{Edit, Refusal, Source, refuse};
 use crate::id::{ItemId, Part};
-use crate::splice::{Splice, spliced, tidied};
+use crate::reading::read;
+use crate::splice::{Splice, tidied};
 
 /// Renames a part everywhere.
 pub(crate) fn rename(
@@ -61,10 +62,9 @@ fn everywhere(
         splices.push(written(source.text, found, to)?);
     }
     let splices = tidied(source.text, splices);
-    let after =
-        spliced(source.text, &splices).ok_or_else(|| Refusal::new("the name cannot be written here"))?;
-    judge(refs, &after, &definition, &new, &splices)?;
-    Ok(Edit { splices, ..Edit::default() })
+    let tree = read(source, &splices).ok_or_else(|| Refusal::new("the name cannot be written here"))?;
+    judge(refs, &tree, &definition, &new, &splices)?;
+    Ok(Edit { splices, read: Some(Box::new(tree)), ..Edit::default() })
 }
 
 /// The part to be renamed, under its old and its new name.
@@ -239,16 +239,15 @@ fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
 /// Checks that after the change every name refers to the same part as before.
 fn judge(
     before: &References,
-    after: &str,
+    after: &Tree,
     definition: &Definition,
     new: &Definition,
     splices: &[Splice],
 ) -> Result<(), Refusal> {
-    let (doc, problems) = g7_syntax::parse(after, FileId(0));
-    if let Some(problem) = problems.first() {
+    if let Some(problem) = after.problems.first() {
         return refuse(format!("this name cannot be written here: {problem}"));
     }
-    let now = references(&doc);
+    let now = references(&after.document);
     let meant = |d: &Definition| if d == definition { new.clone() } else { within(d, definition, new) };
     let same = before.all().len() == now.all().len()
         && before.all().iter().zip(now.all()).all(|(a, b)| {

@@ -1,0 +1,63 @@
+//! What a changed text gives, read only where it changed, and whether this is what a gesture asked for.
+//!
+//! It stands above the ends of a gesture (`change.rs`) and below the gestures and their execution. The tree
+//! that is read here goes out with the change, so that nobody reads the new text again.
+
+use g7_model::{Chart, ChartItem, Document, FileId, Item, Step};
+use g7_syntax::{Marks, Tree};
+
+use crate::change::{Refusal, Source, refuse};
+use crate::splice::{Splice, spliced};
+
+/// The text after a change, read. `None` if the change does not fit the text.
+pub(crate) fn read(source: &Source<'_>, splices: &[Splice]) -> Option<Tree> {
+    let Some(marks) = source.marks else {
+        return spliced(source.text, splices).map(|text| Tree::read(text, FileId(0)));
+    };
+    let mut tree = known(source, marks);
+    let edits: Vec<_> = splices.iter().map(|s| (s.start..s.end, s.insert.as_str())).collect();
+    tree.change(&edits).then_some(tree)
+}
+
+fn known(source: &Source<'_>, marks: &Marks) -> Tree {
+    Tree {
+        text: source.text.to_owned(),
+        document: source.document.clone(),
+        problems: source.problems.to_vec(),
+        marks: marks.clone(),
+    }
+}
+
+/// Checks that the text gives exactly the intended document.
+pub(crate) fn judge(tree: &Tree, meant: &Document) -> Result<(), Refusal> {
+    if let Some(problem) = tree.problems.first() {
+        return refuse(format!("this cannot be written: {problem}"));
+    }
+    let (read, meant) = (&tree.document.items, &meant.items);
+    if read.len() == meant.len() && read.iter().zip(meant).all(|(a, b)| same(a, b)) {
+        return Ok(());
+    }
+    Err(unwritable())
+}
+
+pub(crate) fn unwritable() -> Refusal {
+    Refusal::new("this cannot be written into the text as it stands here; change the text itself")
+}
+
+/// True if two items mean the same: the empty braces of a step mean nothing.
+fn same(a: &Item, b: &Item) -> bool {
+    let (Item::Chart(a), Item::Chart(b)) = (a, b) else { return a == b };
+    let Chart { kind, name, comment, every, items, at: _ } = a;
+    (kind, name, comment, every) == (&b.kind, &b.name, &b.comment, &b.every)
+        && items.len() == b.items.len()
+        && items.iter().zip(&b.items).all(|(a, b)| match (a, b) {
+            (ChartItem::Step(a), ChartItem::Step(b)) => same_step(a, b),
+            _ => a == b,
+        })
+}
+
+fn same_step(a: &Step, b: &Step) -> bool {
+    let Step { name, kind, initial, linked, comment, actions, braces: _, at: _ } = a;
+    (name, kind, initial, linked, comment, actions)
+        == (&b.name, &b.kind, &b.initial, &b.linked, &b.comment, &b.actions)
+}
