@@ -8,6 +8,8 @@
 //!
 //! A refused gesture leaves nothing but a sentence for the user.
 
+use std::ops::Range;
+
 use g7_model::{Document, Problem, Severity};
 use g7_syntax::{Marks, Tree};
 
@@ -30,7 +32,27 @@ pub struct Source<'a> {
 impl Source<'_> {
     /// True if the text has no syntax errors.
     pub(crate) fn is_clean(&self) -> bool {
-        self.problems.iter().all(|p| p.severity() != Severity::Error)
+        self.errors().next().is_none()
+    }
+
+    fn errors(&self) -> impl Iterator<Item = &Problem> {
+        self.problems.iter().filter(|p| p.severity() == Severity::Error)
+    }
+
+    /// True if no syntax error stands in the items of the file that these bytes touch, or between them and
+    /// the items that follow.
+    pub fn reads_cleanly(&self, bytes: Range<usize>) -> bool {
+        if self.is_clean() {
+            return true;
+        }
+        let starts: Vec<usize> = self.document.items.iter().map(|i| i.at().bytes().start).collect();
+        // The numbers of the parts of the text, each from the start of an item to that of the next one.
+        let parts = |bytes: Range<usize>| {
+            let first = starts.partition_point(|start| *start < bytes.start);
+            first..=starts.partition_point(|start| *start <= bytes.end)
+        };
+        let mine = parts(bytes);
+        self.errors().map(|p| parts(p.at.bytes())).all(|p| p.end() < mine.start() || mine.end() < p.start())
     }
 }
 

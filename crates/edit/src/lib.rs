@@ -11,8 +11,9 @@
 //!
 //! # What must hold
 //!
-//! After an accepted gesture the text has no syntax errors and gives exactly the document that the
-//! gesture asked for: each result is parsed and compared.
+//! After an accepted gesture the text has no new syntax errors and gives exactly the document that the
+//! gesture asked for: each result is parsed and compared. Where the text had syntax errors before, they
+//! stand in other items of the file than those that the gesture changes.
 //! Steps and transitions always alternate; the editor refuses what the standard forbids.
 //! - Nothing panics, whatever the ids and texts.
 #![forbid(unsafe_code)]
@@ -40,7 +41,7 @@ use g7_syntax::Tree;
 
 use change::refuse;
 use draft::Draft;
-use reading::{judge, read, unwritable};
+use reading::{MENDED_FIRST, judge, judge_problems, read, unwritable};
 
 /// Executes a gesture; places of symbols are known only from the layout section of the text.
 pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
@@ -55,12 +56,11 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
             None => refuse("the change does not fit the text"),
         };
     }
-    if !source.is_clean() {
-        return refuse(
-            "the text has syntax errors; correct them first (the drawing shows the chart before them)",
-        );
-    }
     if let Gesture::Rename { id, name, to } = gesture {
+        // Names in a text that cannot be read are not known.
+        if !source.is_clean() {
+            return refuse(MENDED_FIRST);
+        }
         return gestures::rename(source, id.as_ref(), name.as_deref(), to);
     }
     if let Gesture::Variable { name: Some(name), row } = gesture
@@ -77,15 +77,13 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     difference::settle(&mut draft);
     let splices = difference::difference(&draft);
     let mut tree = read(source, &splices).ok_or_else(unwritable)?;
-    judge(&tree, &draft.doc)?;
+    judge(source, &splices, &tree, &draft.doc)?;
     let splices = match std::mem::take(&mut draft.besides) {
         besides if besides.is_empty() => splices,
         besides => {
             let splices = with_besides(splices, besides);
             tree = read(source, &splices).ok_or_else(unwritable)?;
-            if let Some(problem) = tree.problems.first() {
-                return refuse(format!("this cannot be written: {problem}"));
-            }
+            judge_problems(source, &splices, &tree)?;
             splices
         }
     };

@@ -3,7 +3,7 @@
 //! It stands above the ends of a gesture (`change.rs`) and below the gestures and their execution. The tree
 //! that is read here goes out with the change, so that nobody reads the new text again.
 
-use g7_model::{Chart, ChartItem, Document, FileId, Item, Step};
+use g7_model::{Chart, ChartItem, Document, FileId, Item, Problem, Step};
 use g7_syntax::{Marks, Tree};
 
 use crate::change::{Refusal, Source, refuse};
@@ -28,11 +28,43 @@ fn known(source: &Source<'_>, marks: &Marks) -> Tree {
     }
 }
 
-/// Checks that the text gives exactly the intended document.
-pub(crate) fn judge(tree: &Tree, meant: &Document) -> Result<(), Refusal> {
-    if let Some(problem) = tree.problems.first() {
-        return refuse(format!("this cannot be written: {problem}"));
+/// Checks that the text has no other problems than before, which stand elsewhere.
+pub(crate) fn judge_problems(source: &Source<'_>, splices: &[Splice], tree: &Tree) -> Result<(), Refusal> {
+    if !splices.iter().all(|s| source.reads_cleanly(s.start..s.end)) {
+        return refuse(MENDED_FIRST);
     }
+    let before = |new: &&Problem| {
+        source.problems.iter().any(|old| {
+            (old.code, &old.what) == (new.code, &new.what)
+                && moved(splices, old.at.start) == new.at.start.into()
+        })
+    };
+    match tree.problems.iter().find(|new| !before(new)) {
+        Some(problem) => refuse(format!("this cannot be written: {problem}")),
+        None if tree.problems.len() != source.problems.len() => Err(unwritable()),
+        None => Ok(()),
+    }
+}
+
+/// Where a byte that the splices do not touch stands after them.
+fn moved(splices: &[Splice], at: u32) -> i64 {
+    let long = |n: usize| i64::try_from(n).unwrap_or(i64::MAX);
+    let before = splices.iter().filter(|s| s.end <= at as usize);
+    before.fold(i64::from(at), |at, s| at + long(s.insert.len()) - long(s.end - s.start))
+}
+
+/// The refusal of a gesture where the text cannot be read.
+pub(crate) const MENDED_FIRST: &str =
+    "the text has syntax errors; correct them first (the drawing shows the chart before them)";
+
+/// Checks that the text gives exactly the intended document.
+pub(crate) fn judge(
+    source: &Source<'_>,
+    splices: &[Splice],
+    tree: &Tree,
+    meant: &Document,
+) -> Result<(), Refusal> {
+    judge_problems(source, splices, tree)?;
     let (read, meant) = (&tree.document.items, &meant.items);
     if read.len() == meant.len() && read.iter().zip(meant).all(|(a, b)| same(a, b)) {
         return Ok(());

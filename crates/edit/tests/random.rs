@@ -354,6 +354,29 @@ fn random_series_keep_the_text_clean_and_can_be_undone() {
 }
 
 #[test]
+fn an_error_in_another_item_stays_as_it_is() {
+    let mut accepted = 0;
+    for (k, text) in texts().iter().enumerate() {
+        let mut rng = Rng(77 + k as u64);
+        let mut text = format!("test \"later\" {{\n  set zz :=\n}}\n\n{text}");
+        for _ in 0..30 {
+            let tree = Tree::read(text.clone(), FileId(0));
+            let gesture = serde_json::from_value::<Gesture>(a_gesture(&mut rng, &text, &tree.document));
+            let Ok(gesture) = gesture else { continue };
+            if matches!(gesture, Gesture::Text { .. }) {
+                continue;
+            }
+            let Ok(edit) = run(&text, &gesture) else { continue };
+            let after = Tree::read(spliced(&text, &edit.splices).expect("it fits"), FileId(0));
+            assert_eq!(after.problems, tree.problems, "{gesture:?} in\n{text}");
+            accepted += usize::from(!edit.splices.is_empty());
+            text = after.text;
+        }
+    }
+    assert!(accepted > 100, "only {accepted} gestures were accepted");
+}
+
+#[test]
 fn nothing_makes_it_panic() {
     let mut rng = Rng(7);
     let odd = [

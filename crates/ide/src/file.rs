@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use g7_edit::{Edit, History, Splice, spliced};
-use g7_model::{Document, FileId, Problem, Severity, Span};
+use g7_model::{Document, FileId, Item, Problem, Severity, Span};
 use g7_rig::Source;
 
 use crate::positions::Positions;
@@ -185,6 +185,22 @@ impl File {
         }
     }
 
+    /// The document to draw a chart from: the present one if the chart and its layout can be read in it,
+    /// whatever stands in the rest of the file.
+    pub fn drawn_chart(&self, name: &str) -> Readable {
+        let parts = self.source.document.items.iter().filter_map(|item| match item {
+            Item::Chart(c) if *c.name.text == *name => Some((true, c.at.0)),
+            Item::Layout(l) if *l.chart.text == *name => Some((false, l.at.0)),
+            _ => None,
+        });
+        let (mut found, mut clean) = (false, !self.is_clean());
+        for (chart, at) in parts {
+            found |= chart;
+            clean &= self.as_edited().reads_cleanly(at.bytes());
+        }
+        if found && clean { self.present(false) } else { self.drawn() }
+    }
+
     fn present(&self, stale: bool) -> Readable {
         Readable {
             document: Arc::new(self.source.document.clone()),
@@ -255,5 +271,76 @@ impl Readable {
     /// The words at a place.
     pub fn words(&self, at: Span) -> String {
         self.text.get(at.start as usize..at.end as usize).unwrap_or("").to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const CHARTS: &str = "input a : BOOL\n\nchart G {\n  initial step 1\n  1 -> 1 when a\n}\n\nchart H {\n  initial step 1\n}\n";
+
+    /// The file is what a new one with its text is.
+    fn same(file: &File) {
+        let new = File::open_native("a.g7", file.text().to_owned()).expect("it opens");
+        let shown = |f: &File| format!("{:?}", (&f.source.bytes, &f.source.document, &f.problems));
+        assert_eq!(shown(file), shown(&new), "{}", file.text());
+    }
+
+    #[test]
+    fn each_way_to_change_a_file_gives_the_file_of_the_new_text() {
+        let mut file = File::open_native("a.g7", CHARTS.to_owned()).expect("it opens");
+        let at = CHARTS.find("when a").expect("it is there");
+        file.change(&[Splice::new(at, at + 6, "wen"), Splice::new(at + 8, at + 8, "// é\n")], true)
+            .expect("it fits");
+        same(&file);
+        file.travel(true).expect("there is a change");
+        assert_eq!(file.text(), CHARTS);
+        same(&file);
+        let mut edit =
+            crate::gestures::draft(&file, &g7_edit::Gesture::AddStep { chart: "H".into(), at: None, kind: None })
+                .expect("a step is added");
+        assert!(edit.read.is_some(), "the gesture has read the text");
+        file.make(&mut edit).expect("it fits");
+        same(&file);
+        for text in ["", "chart é {}", "chart è {}", "chart è {}\n", &CHARTS.replace("chart", "task"), CHARTS]
+        {
+            file.take(text.to_owned()).expect("it fits");
+            assert_eq!(file.text(), text);
+            same(&file);
+        }
+        assert!(file.change(&[Splice::new(9_999, 9_999, "")], false).is_err());
+        assert!(file.change(&[Splice::new(4, 2, "")], false).is_err());
+        assert_eq!(file.text(), CHARTS);
+    }
+
+    #[test]
+    fn a_key_reads_a_few_lines() {
+        let mut text = String::from("chart G {\n  initial step 0\n");
+        (1..1000).for_each(|n| text.push_str(&format!("  {} -> {n} when =1\n  step {n}\n", n - 1)));
+        text.push_str("  999 -> 0 when =1\n}\n");
+        let at = text.find("step 500").expect("it is there");
+        let mut file = File::open_native("a.g7", text).expect("it opens");
+        file.take(file.text().replace("step 7\n", "step 7 \n")).expect("it fits");
+        file.change(&[Splice::new(at, at, " ")], true).expect("it fits");
+        assert!(file.source.marks.reread() < 300, "{} bytes", file.source.marks.reread());
+        file.take(file.text().replace("step 700\n", "step 700 \n")).expect("it fits");
+        assert!(file.source.marks.reread() < 300, "{} bytes", file.source.marks.reread());
+    }
+
+    #[test]
+    fn a_chart_is_drawn_from_the_present_text_if_the_error_is_elsewhere() {
+        let mut file = File::open_native("a.g7", CHARTS.to_owned()).expect("it opens");
+        let at = CHARTS.find(" a\n}").expect("it is there");
+        file.change(
+            &[Splice::new(at, at + 2, ""), Splice::new(CHARTS.len() - 2, CHARTS.len() - 2, "  step 2\n")],
+            false,
+        )
+        .expect("it fits");
+        assert!(!file.is_clean());
+        let (g, h) = (file.drawn_chart("G"), file.drawn_chart("H"));
+        assert_eq!((g.stale, &*g.text), (true, CHARTS));
+        assert_eq!((h.stale, &*h.text), (false, file.text()));
+        assert!(file.drawn_chart("Nothing").stale);
     }
 }

@@ -110,7 +110,7 @@ impl Item {
 
 /// Draws a chart of a file.
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
-    let readable = file.drawn();
+    let readable = file.drawn_chart(&wish.chart);
     let options = options(wish)?;
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart =

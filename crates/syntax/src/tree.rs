@@ -53,6 +53,11 @@ impl Marks {
     pub fn none(file: FileId) -> Marks {
         Marks { file, ..Marks::default() }
     }
+
+    /// How many bytes the last reading has read.
+    pub fn reread(&self) -> usize {
+        self.reread
+    }
 }
 
 impl Tree {
@@ -61,11 +66,6 @@ impl Tree {
         let mut tree = Tree { text, marks: Marks::none(file), ..Tree::default() };
         tree.read_whole();
         tree
-    }
-
-    /// How many bytes the last reading has read.
-    pub fn reread(&self) -> usize {
-        self.marks.reread
     }
 
     /// Changes the text: each range of bytes of the present text is replaced by the words. The ranges are

@@ -238,7 +238,7 @@ fn follow(tree: &mut Tree, splices: &[Splice], before: &str) -> (usize, usize) {
         let line = now.lines().zip(read.lines()).find(|(a, b)| a != b);
         panic!("{splices:?}\n--- before\n{before}\n--- after\n{}\n--- first difference: {line:?}", tree.text);
     }
-    (tree.reread(), tree.text.len())
+    (tree.marks.reread(), tree.text.len())
 }
 
 /// Random changes, each followed by its inverse now and then.
@@ -326,7 +326,7 @@ fn chain(steps: usize) -> String {
 fn a_key_reads_a_few_lines_whatever_the_length_of_the_chart() {
     let text = chain(1000);
     let mut tree = Tree::read(text.clone(), FileId(0));
-    assert_eq!((tree.reread(), tree.problems.len()), (text.len(), 0));
+    assert_eq!((tree.marks.reread(), tree.problems.len()), (text.len(), 0));
     let at = |what: &str| text.find(what).expect("it is there");
     for (place, old, new) in [
         (at("step 500 {"), 0, "x"),
