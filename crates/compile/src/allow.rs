@@ -1,12 +1,12 @@
 //! Warnings that the author has looked at: notes of the form `// allow G0111: the reason`.
 //!
-//! Such a note stands before an item of the file, or of a chart, and covers that item; `// allow in
-//! file G0111: the reason` covers the file. A note without a reason, with a code that does not exist
+//! Such a note stands before an item of the file, or of a chart, and covers that item; at the end of a
+//! line it covers the item of that line. `// allow in file G0111: the reason` covers the file. A note without a reason, with a code that does not exist
 //! or is an error, and one that silences nothing are problems of their own. The notes are those of the
 //! text, so the language and its printer need no form for them (`docs/decisions/050-allow.md`).
 
 use g7_model::codes::{self, Code};
-use g7_model::{ChartItem, Document, Item, Note, Problem, Severity, Span};
+use g7_model::{Chart, ChartItem, Document, Item, Note, Problem, Severity, Span};
 
 /// A silence: its note, the code and the bytes that it covers.
 struct Silence {
@@ -73,19 +73,37 @@ fn read(doc: &Document, note: &Note) -> Option<Result<Silence, Problem>> {
         let help = format!("write `// allow {id}: ` and why it is meant so");
         return refused(format!("there is no reason why `{id}` is allowed here"), &help);
     }
-    let covers = if in_file { Some(Span { start: 0, end: u32::MAX, ..at }) } else { behind(doc, at) };
+    let covers = match note.behind {
+        _ if in_file => Some(Span { start: 0, end: u32::MAX, ..at }),
+        Some(line) => Some(before(doc, at, line)),
+        None => behind(doc, at),
+    };
     let Some(covers) = covers else {
         return refused("no item follows this note".into(), "write it before an item, or `allow in file`");
     };
     Some(Ok(Silence { at, code, covers }))
 }
 
+/// The items that a note can stand beside: those of its chart, or else those of the file.
+fn places(doc: &Document, note: Span) -> (Option<Span>, Vec<Span>) {
+    let inside = |c: &&Chart| c.at.0.start < note.start && note.end <= c.at.0.end;
+    match doc.charts().find(inside) {
+        Some(chart) => (Some(chart.at.0), chart.items.iter().map(ChartItem::at).collect()),
+        None => (None, doc.items.iter().map(Item::at).collect()),
+    }
+}
+
 /// The item that begins next behind a note: the first of a chart if the note stands in that chart.
 fn behind(doc: &Document, note: Span) -> Option<Span> {
-    let chart = doc.charts().find(|c| c.at.0.start < note.start && note.end <= c.at.0.end);
-    let places: Vec<Span> = match chart {
-        Some(chart) => chart.items.iter().map(ChartItem::at).collect(),
-        None => doc.items.iter().map(Item::at).collect(),
-    };
+    let (_, places) = places(doc, note);
     places.into_iter().filter(|at| at.start >= note.end && at.file == note.file).min_by_key(|at| at.start)
+}
+
+/// The line of a note that stands at its end, and the item that begins last before the note: on the line of the
+/// first brace of a chart that is the chart.
+fn before(doc: &Document, note: Span, line: u32) -> Span {
+    let (chart, places) = places(doc, note);
+    let last = places.into_iter().filter(|at| at.start < note.start && at.file == note.file);
+    let item = last.max_by_key(|at| at.start).or(chart).unwrap_or(note);
+    Span { start: item.start.min(line), end: item.end.max(note.start), ..note }
 }

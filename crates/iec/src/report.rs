@@ -91,7 +91,11 @@ impl Report {
         let line: String =
             xml.chars().take(LONGEST_NOTE).map(|c| if c.is_control() { ' ' } else { c }).collect();
         let at = self.span(&(0..0));
-        self.notes.push(Note { text: format!("// not carried over: {}", line.trim_end()).into(), at });
+        self.notes.push(Note {
+            text: format!("// not carried over: {}", line.trim_end()).into(),
+            at,
+            behind: None,
+        });
     }
 
     /// The notes kept so far.

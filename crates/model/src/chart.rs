@@ -19,6 +19,8 @@ pub struct Note {
     pub text: Box<str>,
     /// Where it stands.
     pub at: Span,
+    /// The first byte of its line, if it is a `//` that stands behind something there.
+    pub behind: Option<u32>,
 }
 
 impl PartialEq for Note {

@@ -4,6 +4,7 @@
 //! needed. Notes are kept for the printer. The lexer never fails: characters without a meaning
 //! become a `Bad` token with a problem.
 
+use crate::foreign;
 use crate::problems::Problems;
 use g7_iec::constant;
 use g7_model::{FileId, Fix, Note, Problem, Span, codes};
@@ -71,6 +72,8 @@ pub(crate) enum Tok {
     Hash,
     /// `%` between operands, as other languages have it.
     Percent,
+    /// `?` with a `:` behind it on its line.
+    Question,
     Bad,
 }
 
@@ -203,7 +206,10 @@ impl<'a> Lexer<'a> {
                 b'/' if self.byte(1) == b'/' => self.line_note(),
                 b'/' if self.byte(1) == b'*' => newline |= self.block_note(b"/*", b"*/"),
                 b'(' if self.byte(1) == b'*' => newline |= self.block_note(b"(*", b"*)"),
-                b'#' if self.at_hash_note() => self.hash_note(),
+                b'#' | b'-' => match foreign::note(self.text, self.pos) {
+                    Some(sign) => self.foreign_note(sign),
+                    None => return newline,
+                },
                 0x80.. => match self.rest().chars().next() {
                     Some(c) if c.is_whitespace() => self.pos += c.len_utf8(),
                     _ => return newline,
@@ -214,21 +220,18 @@ impl<'a> Lexer<'a> {
         }
     }
 
-    /// True at a `#` that begins a note in other languages: behind a blank, and before no number.
-    fn at_hash_note(&self) -> bool {
-        let before = self.pos.checked_sub(1).and_then(|p| self.text.as_bytes().get(p));
-        before.is_none_or(|b| b.is_ascii_whitespace() || *b == b';')
-            && (matches!(self.byte(1), b' ' | b'\t' | b'#') || self.byte(1).is_ascii_alphabetic())
-    }
-
-    fn hash_note(&mut self) {
+    /// Reads a note that begins with the sign of another language.
+    fn foreign_note(&mut self, sign: &str) {
         let start = self.pos;
         self.line_note();
-        let at = Span { end: offset(start + 1), ..self.span(start) };
+        let at = Span { end: offset(start + sign.len()), ..self.span(start) };
         self.problems.add(at, || {
-            Problem::new(&codes::BAD_CHARACTER, at, "a note to the reader does not begin with `#`")
-                .help("write `//`")
-                .fix(Fix::sure("write `//`", at, "//"))
+            let what = format!("a note to the reader does not begin with `{sign}`");
+            Problem::new(&codes::BAD_CHARACTER, at, what).help("write `//`").fix(Fix::sure(
+                "write `//`",
+                at,
+                "//",
+            ))
         });
     }
 
@@ -238,7 +241,9 @@ impl<'a> Lexer<'a> {
         self.pos += rest.find('\n').unwrap_or(rest.len());
         let text = self.text.get(start..self.pos).unwrap_or_default().trim_end();
         let at = Span { end: offset(start + text.len()), ..self.span(start) };
-        self.notes.push(Note { text: text.into(), at });
+        // Looked for once on a line, because such a note ends it.
+        let behind = foreign::line_before(self.text, start);
+        self.notes.push(Note { text: text.into(), at, behind });
     }
 
     fn block_note(&mut self, open: &[u8; 2], close: &[u8; 2]) -> bool {
@@ -272,7 +277,7 @@ impl<'a> Lexer<'a> {
         }
         let text = self.text.get(start..self.pos).unwrap_or_default();
         let text = if text.contains('\r') { text.replace("\r\n", "\n").into() } else { text.into() };
-        self.notes.push(Note { text, at: self.span(start) });
+        self.notes.push(Note { text, at: self.span(start), behind: None });
         newline
     }
 
@@ -323,6 +328,7 @@ impl<'a> Lexer<'a> {
             b'.' => self.dot(glued),
             b'%' if next.is_ascii_alphabetic() => self.direct(),
             b'%' => self.take(1, Tok::Percent),
+            b'?' if foreign::choice(self.rest()) => self.take(1, Tok::Question),
             b'\'' if glued && self.after_operand() => self.take(1, Tok::Prime),
             b'\'' => self.quoted('\'', '$', Tok::Str, "text"),
             b'"' => self.quoted('"', '\\', Tok::Comment, "comment"),
@@ -566,11 +572,7 @@ impl<'a> Lexer<'a> {
         self.report(start, |at| {
             let shown: String = run.chars().take(8).flat_map(char::escape_debug).collect();
             let problem = Problem::new(&codes::BAD_CHARACTER, at, format!("`{shown}` has no meaning here"));
-            match run {
-                "~" => problem.help("the complement is written `not a`"),
-                "?" => problem.help("there is no `? :`; write `IF … THEN … ELSE … END_IF`"),
-                _ => problem,
-            }
+            if run == "~" { problem.help("the complement is written `not a`") } else { problem }
         });
     }
 }

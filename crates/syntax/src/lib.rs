@@ -21,6 +21,7 @@
 #![forbid(unsafe_code)]
 
 mod decode;
+mod foreign;
 pub mod il;
 pub mod ladder;
 mod lexer;

@@ -146,6 +146,7 @@ fn public(kind: Tok) -> Option<TokenKind> {
         | Tok::Overline
         | Tok::Hash
         | Tok::Percent
+        | Tok::Question
         | Tok::Bad => TokenKind::Sign,
     })
 }

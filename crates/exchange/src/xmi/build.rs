@@ -32,7 +32,7 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
     items.extend((0..plan.sheets.len()).filter_map(|i| builder.chart(i)).map(Item::Chart));
     let name = plan.name.as_ref().filter(|n| !n.trim().is_empty());
     let mut notes: Vec<Note> = name
-        .map(|n| Note { text: format!("{NAME_NOTE}{}", shown(n).trim()).into(), at })
+        .map(|n| Note { text: format!("{NAME_NOTE}{}", shown(n).trim()).into(), at, behind: None })
         .into_iter()
         .collect();
     notes.extend(report.take_notes());

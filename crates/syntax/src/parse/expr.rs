@@ -59,7 +59,34 @@ impl Parser<'_> {
 
     fn tree(&mut self, least: u8) -> Tree {
         let left = self.unary();
-        self.operators(left, least)
+        let tree = self.operators(left, least);
+        // Nothing binds less, so it stands behind the whole condition.
+        if least == 1 && self.at(Tok::Question) { self.choice(&tree) } else { tree }
+    }
+
+    /// `a ? b : c` of other languages: told once, with the function that chooses.
+    fn choice(&mut self, condition: &Tree) -> Tree {
+        let sign = self.here();
+        if !self.enter() {
+            return self.no_tree();
+        }
+        self.bump();
+        let yes = self.tree(1).expr.at.0;
+        self.eat(Tok::Colon);
+        let no = self.tree(1).expr.at.0;
+        self.leave();
+        let at = condition.expr.at.0.to(no);
+        let call = [no, yes].map(|of| self.text_at(of)).join(", ");
+        let call = format!("SEL({}, {call})", self.text_at(condition.expr.at.0));
+        self.lexer.problems.add(sign, || {
+            let help = format!("write `{call}`, or `IF … THEN … ELSE … END_IF` in a body");
+            Problem::new(&codes::EXPECTED, sign, "there is no `? :`").help(help).fix(Fix::likely(
+                format!("write `{call}`"),
+                at,
+                call,
+            ))
+        });
+        Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 }
     }
 
     fn operators(&mut self, mut left: Tree, least: u8) -> Tree {

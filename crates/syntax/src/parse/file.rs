@@ -85,10 +85,7 @@ impl Parser<'_> {
         if self.foreign_block(word) {
             return;
         }
-        if self.at(Tok::Minus) && self.peek().kind == Tok::Minus {
-            let what = "a note to the reader does not begin with `--`";
-            self.problem_help(&codes::BAD_CHARACTER, at, what, "write `//`");
-        } else if self.at_chart_start() {
+        if self.at_chart_start() {
             let help = "write it between the braces of a chart: `chart Main { … }`";
             self.problem_help(&codes::EXPECTED, at, "steps and transitions stand in a chart", help);
         } else if !word.is_empty() {

@@ -113,7 +113,8 @@ impl<'a> Reader<'a> {
         let name = lexer.token();
         let colon = lexer.token();
         let word = self.text.get(name.start as usize..name.end as usize)?;
-        let fits = name.kind == Tok::Word && colon.kind == Tok::Colon && !colon.newline;
+        let here = name.kind == Tok::Word && name.start as usize == self.pos;
+        let fits = here && colon.kind == Tok::Colon && !colon.newline;
         if !fits {
             return None;
         }

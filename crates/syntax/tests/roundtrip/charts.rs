@@ -253,8 +253,11 @@ fn item() -> impl Strategy<Value = Item> {
 
 /// Any document without `Bad` expressions.
 pub(crate) fn document() -> impl Strategy<Value = Document> {
-    let note = prop_oneof!["//[a-z]{0,5}", "/\\*[a-z\n]{0,5}\\*/"]
-        .prop_map(|text| Note { text: text.into(), at: Span::default() });
+    let note = prop_oneof!["//[a-z]{0,5}", "/\\*[a-z\n]{0,5}\\*/"].prop_map(|text| Note {
+        text: text.into(),
+        at: Span::default(),
+        behind: None,
+    });
     (prop::collection::vec(item(), 0..4), prop::collection::vec(note, 0..2))
         .prop_map(|(items, notes)| Document { items, notes })
 }
