@@ -192,7 +192,7 @@ web/public/g7.wasm: FORCE
 web: web/dist/index.html
 
 web/dist/index.html: web/public/g7.wasm web/node_modules/.package-lock.json $(PAGE)
-	cd web && npm run --silent build
+	cd web && WASM=$(WASM) npm run --silent build
 
 web/node_modules/.package-lock.json: web/package.json web/package-lock.json
 	@$(call debian,npm,nodejs npm)
@@ -206,6 +206,7 @@ site: web
 	rm -rf site
 	cp -r web/dist site
 	node web/examples.mjs examples site/examples.json
+	node web/pack.mjs site site
 
 ## the pictures of the examples and of the operator's page, for the book and the README
 pictures: web

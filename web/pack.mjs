@@ -1,14 +1,24 @@
-// Compresses the built page into `packed`, from where it goes into the `g7` binary: each file as gzip
-// under its own name. A wasm module shrinks to a third.
+// Compresses the files of a folder into another one: each as gzip (`name.gz`) and as Brotli (`name.br`).
+// `node pack.mjs` makes `packed` of the built page, from where it goes into the `g7` binary;
+// `node pack.mjs site site` puts both forms beside the files of the playground, where web servers look
+// for them. With `WASM=quick-wasm` it takes little time rather than little room.
 import { mkdirSync, readdirSync, readFileSync, rmSync, statSync, writeFileSync } from 'node:fs';
-import { dirname, join } from 'node:path';
-import { gzipSync } from 'node:zlib';
+import { dirname, join, resolve } from 'node:path';
+import { brotliCompressSync, constants, gzipSync } from 'node:zlib';
 
-rmSync('packed', { recursive: true, force: true });
-for (const path of readdirSync('dist', { recursive: true })) {
-  const built = join('dist', path);
-  if (!statSync(built).isFile()) continue;
-  const packed = join('packed', path);
+const [from = 'dist', to = 'packed'] = process.argv.slice(2);
+const quick = process.env.WASM === 'quick-wasm';
+const paths = readdirSync(from, { recursive: true }).filter((path) => statSync(join(from, path)).isFile() && !/\.(gz|br)$/.test(path));
+if (resolve(from) !== resolve(to)) rmSync(to, { recursive: true, force: true });
+for (const path of paths) {
+  const bytes = readFileSync(join(from, path));
+  const packed = join(to, path);
   mkdirSync(dirname(packed), { recursive: true });
-  writeFileSync(packed, gzipSync(readFileSync(built), { level: 9 }));
+  writeFileSync(`${packed}.gz`, gzipSync(bytes, { level: quick ? 1 : 9 }));
+  const params = {
+    [constants.BROTLI_PARAM_QUALITY]: quick ? 2 : constants.BROTLI_MAX_QUALITY,
+    [constants.BROTLI_PARAM_LGWIN]: constants.BROTLI_MAX_WINDOW_BITS,
+    [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
+  };
+  writeFileSync(`${packed}.br`, brotliCompressSync(bytes, { params }));
 }

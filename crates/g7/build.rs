@@ -4,6 +4,6 @@ fn main() {
     println!("cargo:rerun-if-changed=build.rs");
     // A development build reads the page from the disk.
     if std::env::var("PROFILE").is_ok_and(|p| p == "release") {
-        println!("cargo:rerun-if-changed=../../web/packed/index.html");
+        println!("cargo:rerun-if-changed=../../web/packed/index.html.gz");
     }
 }

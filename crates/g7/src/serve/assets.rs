@@ -1,8 +1,8 @@
 //! The web page: contained in the binary, or read from a folder during its development.
 //!
-//! The binary holds each file as gzip (`web/pack.mjs`), and sends it so: it is a quarter smaller, and
-//! the page is there sooner over a network. Only a client that does not read gzip (a `curl`, not a
-//! browser) gets the file as it was.
+//! Each file is there as gzip and as Brotli (`web/pack.mjs`), and is sent so: the page is there sooner
+//! over a network, and the binary is smaller. A client that reads neither (a `curl`, not a browser) gets
+//! the file as it was, unpacked from the gzip.
 
 use std::borrow::Cow;
 use std::io::Read as _;
@@ -14,6 +14,7 @@ use axum::response::{IntoResponse, Response};
 use flate2::read::GzDecoder;
 use rust_embed::RustEmbed;
 
+use super::encoding::{Encoding, accepted};
 use super::fingerprint;
 use super::shared::Shared;
 
@@ -41,15 +42,16 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
         "operator" if shared.station.is_some() => "index.html",
         path => path,
     };
-    let packed = reads_gzip(&headers);
-    let found = match &shared.page {
-        Some(folder) => on_disk(folder, path).map(|plain| (Cow::Owned(plain), false)),
-        None => Built::get(path).and_then(|file| match packed {
-            true => Some((file.data, true)),
-            false => unpacked(&file.data).map(|plain| (Cow::Owned(plain), false)),
-        }),
-    };
-    let Some((bytes, packed)) = found else {
+    let wanted = accepted(&headers);
+    let found = wanted.iter().find_map(|encoding| match &shared.page {
+        Some(folder) => on_disk(folder, path, *encoding).map(|bytes| (bytes, *encoding)),
+        None => built(path, *encoding).map(|bytes| (bytes, *encoding)),
+    });
+    let Some((bytes, encoding)) = found else {
+        if wanted.is_empty() {
+            let no = "this address has a file as it is, as gzip and as br";
+            return (StatusCode::NOT_ACCEPTABLE, [(header::VARY, "accept-encoding")], no).into_response();
+        }
         if path == "index.html" {
             let html = [(header::CONTENT_TYPE, "text/html; charset=utf-8")];
             return (StatusCode::SERVICE_UNAVAILABLE, html, NONE).into_response();
@@ -65,25 +67,31 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
         (header::ETAG, tag.clone()),
         (header::VARY, header::ACCEPT_ENCODING.to_string()),
     ];
-    if headers.get(header::IF_NONE_MATCH).is_some_and(|known| known.as_bytes() == tag.as_bytes()) {
+    if known(&headers, &tag) {
         return (StatusCode::NOT_MODIFIED, head).into_response();
     }
     let mut response = (head, bytes.into_owned()).into_response();
-    if packed {
-        response.headers_mut().insert(header::CONTENT_ENCODING, HeaderValue::from_static("gzip"));
+    if encoding != Encoding::Identity {
+        response.headers_mut().insert(header::CONTENT_ENCODING, HeaderValue::from_static(encoding.name()));
     }
     response
 }
 
-/// True if the client says that it reads gzip.
-fn reads_gzip(headers: &HeaderMap) -> bool {
-    headers.get_all(header::ACCEPT_ENCODING).iter().filter_map(|v| v.to_str().ok()).any(|encodings| {
-        encodings.split(',').any(|encoding| {
-            let (name, weight) = encoding.split_once(';').unwrap_or((encoding, ""));
-            let refused = weight.trim().strip_prefix("q=").is_some_and(|q| q.parse() == Ok(0.0));
-            name.trim().eq_ignore_ascii_case("gzip") && !refused
-        })
+/// True if the client has this form of the file.
+fn known(headers: &HeaderMap, tag: &str) -> bool {
+    let said = headers.get_all(header::IF_NONE_MATCH).iter().filter_map(|v| v.to_str().ok());
+    said.flat_map(|v| v.split(',')).any(|known| {
+        let known = known.trim();
+        known == "*" || known.strip_prefix("W/").unwrap_or(known) == tag
     })
+}
+
+/// A file of the binary.
+fn built(path: &str, encoding: Encoding) -> Option<Cow<'static, [u8]>> {
+    match encoding {
+        Encoding::Identity => unpacked(&Built::get(&format!("{path}.gz"))?.data).map(Cow::Owned),
+        packed => Built::get(&format!("{path}{}", packed.ending())).map(|file| file.data),
+    }
 }
 
 fn unpacked(bytes: &[u8]) -> Option<Vec<u8>> {
@@ -92,12 +100,12 @@ fn unpacked(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(plain)
 }
 
-fn on_disk(folder: &Path, path: &str) -> Option<Vec<u8>> {
-    let path = folder.join(path).canonicalize().ok()?;
+fn on_disk(folder: &Path, path: &str, encoding: Encoding) -> Option<Cow<'static, [u8]>> {
+    let path = folder.join(format!("{path}{}", encoding.ending())).canonicalize().ok()?;
     if !path.starts_with(folder) || !path.is_file() {
         return None;
     }
-    std::fs::read(path).ok()
+    std::fs::read(path).ok().map(Cow::Owned)
 }
 
 fn kind(path: &str) -> &'static str {
@@ -122,22 +130,6 @@ mod tests {
     use std::io::Write as _;
 
     use super::*;
-
-    #[test]
-    fn gzip_is_sent_to_who_reads_it() {
-        let reads = |said: &'static str| {
-            let mut headers = HeaderMap::new();
-            headers.insert(header::ACCEPT_ENCODING, HeaderValue::from_static(said));
-            reads_gzip(&headers)
-        };
-        for said in ["gzip", "deflate, GZIP", "br;q=1.0, gzip;q=0.8, *;q=0.1"] {
-            assert!(reads(said), "{said}");
-        }
-        for said in ["", "identity", "br", "gzip;q=0", "gzip; q=0.0", "x-gzip-not"] {
-            assert!(!reads(said), "{said}");
-        }
-        assert!(!reads_gzip(&HeaderMap::new()));
-    }
 
     #[test]
     fn others_get_the_file_as_it_was() {

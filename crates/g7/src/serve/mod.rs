@@ -29,6 +29,7 @@ mod assets;
 mod browser;
 mod desk;
 mod drafts;
+mod encoding;
 mod entry;
 mod file_names;
 mod fingerprint;

@@ -1,6 +1,7 @@
 //! Tests the server over real sockets.
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
+mod assets;
 mod crowd;
 mod files;
 mod guard;
