@@ -297,9 +297,11 @@ mod tests {
         file.travel(true).expect("there is a change");
         assert_eq!(file.text(), CHARTS);
         same(&file);
-        let mut edit =
-            crate::gestures::draft(&file, &g7_edit::Gesture::AddStep { chart: "H".into(), at: None, kind: None })
-                .expect("a step is added");
+        let mut edit = crate::gestures::draft(
+            &file,
+            &g7_edit::Gesture::AddStep { chart: "H".into(), at: None, kind: None },
+        )
+        .expect("a step is added");
         assert!(edit.read.is_some(), "the gesture has read the text");
         file.make(&mut edit).expect("it fits");
         same(&file);
