@@ -36,7 +36,7 @@ pub(crate) fn judge_problems(source: &Source<'_>, splices: &[Splice], tree: &Tre
     let before = |new: &&Problem| {
         source.problems.iter().any(|old| {
             (old.code, &old.what) == (new.code, &new.what)
-                && moved(splices, old.at.start) == new.at.start.into()
+                && moved(splices, old.at.start) == i64::from(new.at.start)
         })
     };
     match tree.problems.iter().find(|new| !before(new)) {

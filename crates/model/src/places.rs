@@ -26,6 +26,14 @@ impl Shift for Span {
     }
 }
 
+impl Shift for Note {
+    fn shift(&mut self, by: i32) {
+        let Note { text: _, at, behind } = self;
+        at.shift(by);
+        *behind = behind.map(|byte| byte.saturating_add_signed(by));
+    }
+}
+
 impl Shift for Place {
     fn shift(&mut self, by: i32) {
         self.0.shift(by);
@@ -114,7 +122,6 @@ structs! {
     Local { names, ty, init, at }
     Name { text, at }
     NamedAction { name, comment, body, at }
-    Note { text, at }
     Param { name, ty }
     Parts { name, attributes, max, length, init, at }
     Path { names }
