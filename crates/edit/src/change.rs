@@ -25,7 +25,7 @@ pub struct Source<'a> {
     pub document: &'a Document,
     /// The problems of its syntax.
     pub problems: &'a [Problem],
-    /// What a change of the text needs in order to read only a part of it.
+    /// The marks of the text, with which a change of it reads only a part; none: it reads all.
     pub marks: Option<&'a Marks>,
 }
 

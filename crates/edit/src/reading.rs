@@ -1,4 +1,4 @@
-//! What a changed text gives, read only where it changed, and whether this is what a gesture asked for.
+//! Reads a changed text only where it changed, and tells whether it gives what a gesture asked for.
 //!
 //! It stands above the ends of a gesture (`change.rs`) and below the gestures and their execution. The tree
 //! that is read here goes out with the change, so that nobody reads the new text again.

@@ -77,7 +77,7 @@ fn run(text: &str, gesture: &Gesture) -> Result<Edit, Refusal> {
     let Tree { text, document, problems, marks } = &Tree::read(text.to_owned(), FileId(0));
     let source = Source { text, document, problems, marks: Some(marks) };
     let edit = apply_placed(&source, gesture, &|id| Some((id.to_string().len() as i32 * 100, 300)))?;
-    // What the gesture hands on is what a reading of the new text gives.
+    // A gesture hands on the document that a reading of the new text gives.
     if let Some(read) = &edit.read {
         let whole = Tree::read(spliced(text, &edit.splices).expect("it fits"), FileId(0));
         assert_eq!(read.text, whole.text);

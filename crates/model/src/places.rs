@@ -12,7 +12,7 @@ use crate::{
     UnaryOp, VarDecl, VarKind, View, Work,
 };
 
-/// What has places in a text.
+/// A part of a document that has places in a text.
 pub trait Shift {
     /// Moves all its places by so many bytes. A place stays within what a place can hold.
     fn shift(&mut self, by: i32);

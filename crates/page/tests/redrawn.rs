@@ -14,7 +14,7 @@ fn asked(page: &mut Asked, chart: &Value, since: Option<u64>) -> Value {
     page.ok(wish)
 }
 
-/// What the page has of a chart.
+/// The drawing of a chart that the page has.
 #[derive(Default)]
 struct Had {
     number: u64,

@@ -22,7 +22,7 @@ pub struct Source {
     pub problems: Vec<Problem>,
     /// The foreign format of the file, if it is not .g7.
     pub format: Option<&'static Format>,
-    /// What a change of the text needs in order to read only a part of it.
+    /// The marks of the text, with which a change of it reads only a part.
     pub marks: Marks,
     starts: Vec<usize>,
 }

@@ -15,7 +15,8 @@
 use std::ops::Range;
 
 use crate::decode;
-use crate::parse::marks::{Begin, Change, Level, Mark, Reading, read};
+use crate::parse::marks::{Change, Level, Mark};
+use crate::parse::reading::{Begin, Reading, read};
 use g7_model::{ChartItem, Document, FileId, Item, PlaceAt, Problem, places::Shift};
 
 /// A text, its document and its problems.
@@ -27,11 +28,11 @@ pub struct Tree {
     pub document: Document,
     /// The problems, in the order of the text.
     pub problems: Vec<Problem>,
-    /// What a change needs in order to read only a part.
+    /// The places at which a change can begin and end to read.
     pub marks: Marks,
 }
 
-/// What is known of a text besides its document: where reading can begin and end. Where nothing is known
+/// The places of a text at which reading can begin and end, kept beside its document. Where nothing is known
 /// yet, the first change reads the whole text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Marks {
@@ -168,7 +169,7 @@ impl Tree {
     }
 }
 
-/// What is complete at the mark at which a reading begins.
+/// The parts that are complete at the mark at which a reading begins.
 struct Base {
     level: Level,
     items: usize,
@@ -190,7 +191,7 @@ impl Base {
     }
 }
 
-/// What was known of the text behind the mark at which the reading began.
+/// The parts known of the text behind the mark at which the reading began.
 struct Known {
     found: Vec<Problem>,
     notes: Vec<g7_model::Note>,

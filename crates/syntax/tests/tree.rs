@@ -29,7 +29,7 @@ impl Rng {
     }
 }
 
-/// What is put in.
+/// The texts that are put in.
 const PIECES: &[&str] = &[
     "a",
     "x1",

@@ -25,7 +25,7 @@ impl Encoding {
         }
     }
 
-    /// What the name of a file in this form ends with.
+    /// The ending of the name of a file in this form.
     pub(super) fn ending(self) -> &'static str {
         match self {
             Encoding::Brotli => ".br",
@@ -46,7 +46,7 @@ pub(super) fn accepted(headers: &HeaderMap) -> Vec<Encoding> {
     let weight = |name: &str| said.iter().find(|(n, _)| n.eq_ignore_ascii_case(name)).map(|(_, q)| *q);
     let of = |encoding: Encoding| match (weight(encoding.name()), weight("*")) {
         (Some(q), _) | (None, Some(q)) => q,
-        // What is not named is not read, but for the file as it is: that is the last choice.
+        // A form that is not named is not accepted. The file as it is, is the last choice.
         (None, None) if encoding == Encoding::Identity => f64::MIN_POSITIVE,
         (None, None) => 0.0,
     };

@@ -15,6 +15,7 @@ mod lines;
 mod literal;
 pub(crate) mod marks;
 mod plant;
+pub(crate) mod reading;
 mod scenario;
 mod st;
 mod variable;
