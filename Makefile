@@ -222,7 +222,7 @@ page-test: web
 	@mkdir -p $(TALLY)
 	$(STORIES)
 
-## main-thread time of the page, beside React Flow
+## times of the page beside React Flow, as ratios with limits
 page-bench: wasm web/node_modules/.package-lock.json
 	@$(call debian,chromium,chromium)
 	cd web && npm run --silent bench

@@ -8,16 +8,29 @@ import { live } from '../src/lib/live.svelte';
 import { runs } from '../src/lib/runs.svelte';
 import { page } from '../src/lib/page';
 import { prefs } from '../src/lib/prefs.svelte';
+import { shell } from '../src/lib/shell.svelte';
 import { active, chartText } from './chart';
 
 prefs.leftOpen = prefs.rightOpen = prefs.bottomOpen = false;
-prefs.view = 'chart';
+prefs.view = location.search.includes('text') ? 'text' : 'chart';
 const target = document.getElementById('app');
 if (target) mount(App, { target });
 
 let steps = 1000;
+/** The time that `watch` waits for. */
+let seen: Promise<number> | undefined;
 
 const frame = () => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+const key = () => new Promise<number>((pressed) => addEventListener('keydown', () => pressed(performance.now()), { capture: true, once: true }));
+
+/** From the next key until something is another than before, and painted; in ms. */
+async function until(value: () => unknown): Promise<number> {
+  const before = value();
+  const start = await key();
+  while (value() === before) await new Promise(requestAnimationFrame);
+  await frame();
+  return performance.now() - start;
+}
 
 Object.assign(window, {
   bench: {
@@ -52,5 +65,26 @@ Object.assign(window, {
       const [x, y, w, h] = editor.scene?.drawing.area ?? [0, 0, 0, 0];
       editor.camera?.moveTo(x + w / 2, y + Math.min(h / 2, 400));
     },
+    /** Selects a step in the middle, behind which a key inserts the next one. */
+    select() {
+      live.running = false;
+      shell.select([`Big/s/${steps / 2 + 7}`]);
+      editor.camera?.focus();
+    },
+    /** Opens a text of this many lines, with the cursor behind a receptivity in its middle. */
+    async text(lines: number) {
+      const text = chartText((lines - 4) / 2);
+      const file = await files.open('long.g7', text);
+      await frame();
+      const at = text.indexOf('+ ↑c', text.length * 0.75) + 4;
+      shell.showText(file, at, at);
+      await frame();
+    },
+    /** Waits from the next key on for another drawing, or for other problems of the text. */
+    watch(what: 'scene' | 'problems') {
+      seen = until(what === 'scene' ? () => editor.scene : () => files.current?.look.problems.length);
+    },
+    seen: () => seen,
+    marked: () => document.querySelectorAll('.cm-lintRange').length,
   },
 });

@@ -60,6 +60,8 @@ export class Pointer {
   down(e: PointerEvent): void {
     this.#touch = e.pointerType === 'touch';
     editor.menu = null;
+    // While the view is moved, the browser need not look for what is under the pointer.
+    if (e.button === 1) this.#root.setPointerCapture(e.pointerId);
     if (e.button !== 0 || !e.isPrimary) return;
     const item = this.under(e);
     [this.#at.x, this.#at.y] = this.#place(e);
@@ -88,6 +90,7 @@ export class Pointer {
       if (Math.hypot(dx, dy) < CLICK) return;
       if (!doing.item || !this.#grab(doing.item, doing.add, e.altKey)) {
         this.#doing = null;
+        this.#root.setPointerCapture(e.pointerId);
         return;
       }
       this.#root.setPointerCapture(e.pointerId);
