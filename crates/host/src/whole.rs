@@ -4,9 +4,11 @@
 //! while it is written, so that the next writer of the same file knows what a killed one left behind, and
 //! deletes it.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File, Metadata};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 use std::time::Duration;
 
 /// Writes a file under a temporary name, syncs it and renames it: a full disk or a power failure
@@ -181,25 +183,45 @@ fn fill(
 /// A temporary file younger than this may belong to a writer that has not locked it yet.
 const YOUNG: Duration = Duration::from_secs(60);
 
-/// Deletes what killed writers of this file have left beside it. What cannot be deleted stays.
+/// The temporary files that were there when this process first wrote into a folder, by folder. A folder is listed
+/// once: it may hold thousands of files, and each of them may be written.
+static LEFT: Mutex<BTreeMap<PathBuf, Vec<String>>> = Mutex::new(BTreeMap::new());
+
+/// Deletes what writers of this file that were killed before this process began have left beside it. What cannot
+/// be deleted stays.
 fn sweep(path: &Path) {
     let (Some(name), Some(folder)) = (path.file_name().and_then(|n| n.to_str()), path.parent()) else {
         return;
     };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
-    let begin = format!(".{name}.");
-    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
-        let there = entry.file_name();
-        let numbers = there.to_str().and_then(|n| n.strip_prefix(&begin)?.strip_suffix(".new"));
-        if numbers.is_none_or(|n| n.is_empty() || n.bytes().any(|b| !(b.is_ascii_digit() || b == b'.'))) {
-            continue;
-        }
-        let Ok(file) = File::options().write(true).open(entry.path()) else { continue };
-        let age = file.metadata().and_then(|meta| meta.modified()).map(|at| at.elapsed());
-        if matches!(age, Ok(Ok(age)) if age > YOUNG) && file.try_lock().is_ok() {
-            fs::remove_file(entry.path()).ok();
-        }
-    }
+    let Ok(place) = folder.canonicalize() else { return };
+    let mut left = LEFT.lock().unwrap_or_else(PoisonError::into_inner);
+    let left = left.entry(place).or_insert_with_key(|place| temporaries(place));
+    left.retain(|there| !written_for(there, name) || !swept(&folder.join(there)));
+}
+
+/// The names of the temporary files of a folder.
+fn temporaries(folder: &Path) -> Vec<String> {
+    let names = fs::read_dir(folder).into_iter().flatten().flatten();
+    let names = names.filter_map(|entry| entry.file_name().into_string().ok());
+    names.filter(|there| there.starts_with('.') && there.ends_with(".new")).collect()
+}
+
+/// True if a temporary file was written for a file: `.a.77.1.new` for `a`.
+fn written_for(there: &str, name: &str) -> bool {
+    let rest = there.strip_prefix('.').and_then(|rest| rest.strip_prefix(name)?.strip_prefix('.'));
+    let numbers = rest.and_then(|rest| rest.strip_suffix(".new"));
+    numbers.is_some_and(|n| !n.is_empty() && n.bytes().all(|b| b.is_ascii_digit() || b == b'.'))
+}
+
+/// Deletes a temporary file whose writer was killed; true if it is gone.
+fn swept(there: &Path) -> bool {
+    let file = match File::options().write(true).open(there) {
+        Err(e) => return e.kind() == io::ErrorKind::NotFound,
+        Ok(file) => file,
+    };
+    let age = file.metadata().and_then(|meta| meta.modified()).map(|at| at.elapsed());
+    matches!(age, Ok(Ok(age)) if age > YOUNG) && file.try_lock().is_ok() && fs::remove_file(there).is_ok()
 }
 
 #[cfg(test)]
@@ -314,5 +336,10 @@ mod tests {
         busy.lock().unwrap();
         write_whole(&path, b"x").unwrap();
         assert_eq!(folder.names(), [".a.78.new", ".a.79.new", ".a.draft.new", ".b.77.new", "a"]);
+        // Files written later in this folder are swept for as well, without another look at the folder.
+        drop(busy);
+        write_whole(&folder.0.join("b"), b"x").unwrap();
+        write_whole(&path, b"y").unwrap();
+        assert_eq!(folder.names(), [".a.78.new", ".a.draft.new", "a", "b"]);
     }
 }

@@ -60,6 +60,11 @@ pub(crate) struct Ladder {
     pub(crate) rungs: Vec<Rung>,
 }
 
+/// What Ladder has no form for, and the way out.
+const SEARCH: &str = "a search for stability, which is a loop,";
+const ONE_PASS: &str = "`--profile iec61131` prints the chart with one pass in a scan; \
+    `g7 compare --profiles iec60848,iec61131` tells whether its outputs stay the same";
+
 /// Equations as rungs.
 ///
 /// # Errors
@@ -86,8 +91,9 @@ pub(crate) fn ladder(e: &form::Block, place: Span) -> Result<Ladder, Vec<Problem
     }
     match l.refused {
         Some(what) => {
-            let text = format!("{what} cannot be printed as Ladder");
-            Err(vec![Problem::new(&codes::NOT_CARRIED, place, text)])
+            let problem =
+                Problem::new(&codes::NOT_CARRIED, place, format!("{what} cannot be printed as Ladder"));
+            Err(vec![if what == SEARCH { problem.help(ONE_PASS) } else { problem }])
         }
         None => Ok(Ladder { variables: l.variables.into_list(), rungs: l.rungs }),
     }
@@ -189,8 +195,7 @@ impl Maker {
                     self.block(&when, block);
                 }
                 St::Until(..) => {
-                    self.refused =
-                        Some("a search for stability, which is a loop: choose a profile of one pass; it");
+                    self.refused = Some(SEARCH);
                 }
                 St::Loop(_) | St::Exit => self.refused = Some("a loop"),
             }
