@@ -196,7 +196,8 @@ impl File {
         let (mut found, mut clean) = (false, !self.is_clean());
         for (chart, at) in parts {
             found |= chart;
-            clean &= self.as_edited().reads_cleanly(at.bytes());
+            // Its first byte also touches the part of the text before it.
+            clean &= self.as_edited().reads_cleanly(at.start as usize + 1..at.end as usize);
         }
         if found && clean { self.present(false) } else { self.drawn() }
     }
