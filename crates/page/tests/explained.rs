@@ -44,7 +44,7 @@ fn parts(page: &str) -> Vec<String> {
     found
 }
 
-/// What a part is: a block of code, whole, or a heading, a list of so many items, a paragraph.
+/// The kind of a part: a block of code, whole, or a heading, a list of so many items, a paragraph.
 fn kind(part: &str) -> String {
     let items = part.lines().filter(|line| line.starts_with("- ")).count();
     match part.split(' ').next().unwrap_or("") {
