@@ -1,14 +1,33 @@
 //! Builds a list of the book's pages on problems, which the editor and `g7 explain` contain.
+//!
+//! They stand in `docs/book` in three languages. The page in the browser fetches those in French and
+//! Portuguese when they are asked for (`web/src/text/explain.ts`), so its module has the English ones alone.
 
 use std::fmt::Write;
 use std::path::Path;
 use std::{env, fs};
 
+/// The languages of the pages, each with its folder in `docs/book`. English is first.
+const LANGUAGES: [(&str, &str); 3] = [("en", "src/problems"), ("fr", "fr/problems"), ("pt", "pt/problems")];
+
 fn main() {
     let root = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
-    let folder = Path::new(&root).join("../../docs/book/src/problems");
+    let in_browser = env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32");
+    let mut table = String::from("&[\n");
+    for (language, folder) in LANGUAGES.into_iter().take(if in_browser { 1 } else { LANGUAGES.len() }) {
+        list(language, &Path::new(&root).join("../../docs/book").join(folder), &mut table);
+    }
+    table.push(']');
+    let out = env::var("OUT_DIR").unwrap_or_default();
+    if let Err(e) = fs::write(Path::new(&out).join("pages.rs"), table) {
+        println!("cargo::error=cannot write the list of pages: {e}");
+    }
+}
+
+/// A row for each page of a folder, in the order of the codes.
+fn list(language: &str, folder: &Path, table: &mut String) {
     println!("cargo::rerun-if-changed={}", folder.display());
-    let mut names: Vec<String> = fs::read_dir(&folder)
+    let mut names: Vec<String> = fs::read_dir(folder)
         .into_iter()
         .flatten()
         .flatten()
@@ -16,16 +35,11 @@ fn main() {
         .filter(|name| name.starts_with('G') && name.ends_with(".md"))
         .collect();
     names.sort();
-    let mut table = String::from("&[\n");
     for name in &names {
         let path = folder.join(name);
         println!("cargo::rerun-if-changed={}", path.display());
         let id = name.trim_end_matches(".md");
-        writeln!(table, "({id:?}, include_str!({:?})),", path.display().to_string()).unwrap_or(());
-    }
-    table.push(']');
-    let out = env::var("OUT_DIR").unwrap_or_default();
-    if let Err(e) = fs::write(Path::new(&out).join("pages.rs"), table) {
-        println!("cargo::error=cannot write the list of pages: {e}");
+        let text = path.display().to_string();
+        writeln!(table, "({language:?}, {id:?}, include_str!({text:?})),").unwrap_or(());
     }
 }

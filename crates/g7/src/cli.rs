@@ -530,11 +530,15 @@ pub(crate) struct Lsp {
 #[command(after_help = "\
 Examples:
   g7 explain G0101
+  g7 explain --lang fr G0101   in French
   g7 explain            every code with its title")]
 pub(crate) struct Explain {
     /// The code, as in `error[G0101]`.
     #[arg(value_parser = values::problem_codes(), hide_possible_values = true)]
     pub(crate) code: Option<String>,
+    /// The language: en, fr or pt [default: that of LC_ALL, LC_MESSAGES or LANG].
+    #[arg(long, value_name = "LANGUAGE", value_parser = ["en", "fr", "pt"], hide_possible_values = true)]
+    pub(crate) lang: Option<String>,
 }
 
 #[derive(Args, Debug)]

@@ -135,8 +135,24 @@ fn explain_knows_every_code_and_says_where_it_comes_from() {
     for code in g7_model::codes::ALL {
         assert!(list.contains(code.id), "{}", code.id);
     }
+    let french = folder.g7(&["explain", "--lang", "fr"]).is(0).out.clone();
+    assert!(french.contains("G0101  warning  un grafcet qui ne démarre jamais\n"), "{french}");
+    assert_eq!(french.lines().count(), list.lines().count());
     let page = folder.g7(&["explain", "g0202"]).is(0).out.clone();
     assert!(page.contains("G0202") && page.contains("Source: "), "{page}");
+    let french = folder.g7(&["explain", "--lang", "fr", "g0202"]).is(0).out.clone();
+    assert!(french.starts_with("# G0202 : ") && french.contains("\nSource : IEC 61131-3"), "{french}");
+    for (lang, first) in
+        [("pt_PT.UTF-8", "# G0202: um nome"), ("de_DE.UTF-8", "# G0202: a name"), ("C", "# G0202: a name")]
+    {
+        folder
+            .command(&["explain", "G0202"])
+            .env("LANG", lang)
+            .assert()
+            .success()
+            .stdout_eq(format!("{first}[..]\n...\n"));
+    }
+    assert!(folder.g7(&["explain", "--lang", "xx", "g0202"]).is(2).err.contains("--lang"));
     folder.g7(&["explain", "G9999"]).is_refused(&["G9999", "g7 explain"]);
 }
 

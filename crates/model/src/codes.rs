@@ -2,8 +2,8 @@
 //!
 //! `G00xx` files and words, `G01xx` structure, `G02xx` names and types, `G03xx`
 //! evolution and actions, `G04xx` limits of a target PLC, `G05xx` plants and
-//! tests, `G06xx` imported files, `G07xx` io files. Each has a page `docs/book/src/problems/<id>.md`
-//! and a case in `tests/check`; a test holds us to both.
+//! tests, `G06xx` imported files, `G07xx` io files. Each has a page `docs/book/src/problems/<id>.md`,
+//! one in `docs/book/fr` and `docs/book/pt`, and a case in `tests/check`; tests hold us to all.
 
 use crate::Severity;
 

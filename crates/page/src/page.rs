@@ -83,7 +83,7 @@ impl Page {
             }
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
             Request::Explain { code } => {
-                let text = explain(&code).ok_or_else(|| format!("there is no problem `{code}`"))?;
+                let text = explain(&code, "en").ok_or_else(|| format!("there is no problem `{code}`"))?;
                 ok(&serde_json::json!({ "markdown": text }))
             }
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),

@@ -8,6 +8,7 @@ import { t } from '../lib/i18n';
 import { page } from '../lib/page';
 import type { Completions, Fix, Hover, Problem, Symbols } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
+import { explanation } from './explain';
 import { markdown } from './markdown';
 import { tell } from './window';
 import { asUnit } from './sync';
@@ -77,8 +78,10 @@ function why(code: string): Action {
     name: t('text.why'),
     apply: (view, from) => {
       void shell.try(async () => {
-        const said = await page.call<{ markdown: string }>({ do: 'explain', code });
-        tell(view, from, markdown(said.markdown));
+        const said = await explanation(code);
+        const about = markdown(said.markdown);
+        about.lang = said.language;
+        tell(view, from, about);
       });
     },
   };

@@ -36,7 +36,7 @@ fn rule(code: &Code) -> Value {
         "shortDescription": { "text": code.title },
         "defaultConfiguration": { "level": code.severity.name() },
     });
-    if let Some(page) = g7_page::explain(code.id) {
+    if let Some(page) = g7_page::explain(code.id, "en") {
         rule["help"] = json!({ "text": page, "markdown": page });
     }
     rule

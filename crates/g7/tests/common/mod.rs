@@ -65,6 +65,9 @@ impl Folder {
             .args(args)
             .current_dir(&self.0)
             .env_remove("CLICOLOR_FORCE")
+            .env_remove("LC_MESSAGES")
+            .env_remove("LC_ALL")
+            .env("LANG", "C")
             .env("COLUMNS", "100")
     }
 

@@ -29,7 +29,7 @@ pub const FILE: &[Word] = &[
         [
             "the receptivity of a transition as a section",
             "la réceptivité d’une transition en section",
-            "a receptividade de uma transição numa secção",
+            "a recetividade de uma transição numa secção",
         ],
     )
     .then(" section"),
@@ -160,7 +160,7 @@ pub const CHART: &[Word] = &[
         [
             "the receptivity of a transition as a section",
             "la réceptivité d’une transition en section",
-            "a receptividade de uma transição numa secção",
+            "a recetividade de uma transição numa secção",
         ],
     )
     .then(" section"),

@@ -9,7 +9,7 @@ pub const CLAUSES: &[Word] = &[
         [
             "the receptivity: the transition clears if it is enabled and this is true",
             "la réceptivité : la transition est franchie si elle est validée et que ceci est vrai",
-            "a receptividade: a transição é transposta se está validada e isto é verdade",
+            "a recetividade: a transição é transposta se está validada e isto é verdade",
         ],
     ),
     Word::reserved(
@@ -68,7 +68,7 @@ pub const CLAUSES: &[Word] = &[
     ),
     Word::free(
         "section",
-        ["the receptivity as a section", "la réceptivité en section", "a receptividade numa secção"],
+        ["the receptivity as a section", "la réceptivité en section", "a recetividade numa secção"],
     ),
     Word::free("scan", ["in each scan", "à chaque cycle", "em cada ciclo"]),
     Word::reserved(
