@@ -127,7 +127,7 @@ zed: tree-sitter
 tally-anew:
 	@rm -rf $(TALLY) && mkdir -p $(TALLY) && touch $(TALLY)/skips
 
-## install what some tests are skipped without: clang with its sanitizers, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, Vim, Neovim, tree-sitter, a bare target, the model checkers ABC, Spin and rIC3
+## install what some tests are skipped without: clang with its sanitizers, tcc, g++, strace, faketime, rt-tests, stress-ng, cppcheck, clang-tidy, avr-gcc, the Arduino core, mosquitto, pyarrow, lxml, awlsim, blark, l5x, FMPy, pyecore, Vim, Neovim, tree-sitter, a bare target, the model checkers ABC, Spin and rIC3
 peers: checkers
 	rustup target add thumbv7em-none-eabi
 	@$(call debian,gcc,gcc)
@@ -150,7 +150,11 @@ peers: checkers
 		cargo fetch --quiet --manifest-path $(CORTEX)/Cargo.toml || echo "the crates of a Cortex-M cannot be had: their test is skipped"
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients)
 	@test ! -x $(PYTHON)/bin/pip || $(PYTHON)/bin/pip install --quiet 'pyarrow>=20' lxml 'awlsim==0.77.*' 'blark==0.8.*' 'l5x==1.7.*' 'fmpy==0.3.*' 'pyecore==0.15.*'
-	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev
+	@$(SUDO) apt-get update -qq && $(SUDO) apt-get install -qq --no-install-recommends clang libclang-rt-dev tcc
+	@command -v iec2c >/dev/null || echo "matiec is no package: put iec2c of https://github.com/beremiz/matiec on the PATH, its lib beside it"
+	@command -v ironplcc >/dev/null || echo "IronPLC is no package: put ironplcc of https://www.ironplc.com on the PATH"
+	@test -d "$(G7_BEREMIZ)" || echo "Beremiz is no package: let G7_BEREMIZ name a checkout of https://github.com/beremiz/beremiz"
+	@test -d "$(G7_XML2ST)" || echo "OpenPLC is no package: let G7_XML2ST name a checkout of https://github.com/Autonomy-Logic/xml2st"
 
 # rIC3 is GPL: it is asked, never linked. Its libraries use parts of the language that are not stable yet.
 checkers:
@@ -248,11 +252,12 @@ prove-table:
 	cargo run --profile soak --quiet --package g7-tests --example prove_table -- $(or $(LIMIT),5) examples tests/spec/litmus \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
 
-## charts written for Beremiz, OpenPLC, matiec and pyecore, taken by these and run beside the engine, as a table with each refusal (G7_BEREMIZ=…, G7_XML2ST=… name their folders, iec2c stands in the PATH, Python has lxml and pyecore)
+## charts written for Beremiz, OpenPLC, matiec, IronPLC, pyecore and compilers, taken by these and run beside the engine, as a table with each refusal (G7_BEREMIZ=…, G7_XML2ST=… name folders, iec2c and ironplcc stand in the PATH, Python has lxml and pyecore; ON=… for other files; LIMIT=… seconds for each row, 600 if not said)
 interop: export G7_PEERS = $(PYTHON)
+interop: export G7_LIMIT = $(LIMIT)
 interop:
-	cargo run --quiet --package g7-tests --example interop -- examples tests/spec tests/interchange \
-		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
+	cargo run --quiet --package g7-tests --example interop -- $(or $(ON),examples tests/spec tests/interchange \
+		$(or $(G7_CORPUS),$(wildcard ../shared/corpus)))
 
 ## how late scans are beside cyclictest, with no page and with 1000, how long a read of Modbus TCP takes (Linux, as root; rt-tests and stress-ng are installed)
 online-bench: export G7_PEERS = $(PYTHON)

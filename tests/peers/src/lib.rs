@@ -11,6 +11,7 @@ pub mod checkers;
 #[cfg(feature = "crowd")]
 pub mod crowd;
 pub mod faults;
+pub mod ironplc;
 pub mod mended;
 pub mod process;
 pub mod projects;

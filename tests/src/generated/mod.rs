@@ -5,6 +5,7 @@
 //! Many charts are compiled into one program, because starting a compiler is slow. The program
 //! reads events from its standard input and writes results to its standard output.
 
+pub mod blocks;
 mod c;
 pub mod cases;
 pub mod plc;

@@ -293,11 +293,13 @@ pub fn of_matiec(folder: &Path, library: &Path, scans: &[Scan]) -> Result<Vec<Si
             files.push(name);
         }
     }
-    let mut gcc = Command::new("gcc");
+    // Each with a limit of time.
+    let mut gcc = Command::new("timeout");
+    gcc.args(["60", "gcc"]);
     gcc.current_dir(folder).arg("-I").arg(library).args(["-w", "-O0", "-std=gnu99", "-o", "project"]);
     run(gcc.args(&files).arg("-lm"))?;
     let stdin = std::fs::File::open(folder.join("input")).map_err(fail)?;
-    let out = run(Command::new(folder.join("project")).stdin(Stdio::from(stdin)))?;
+    let out = run(Command::new("timeout").arg("60").arg(folder.join("project")).stdin(Stdio::from(stdin)))?;
     let words: Vec<u64> = out.as_chunks::<8>().0.iter().map(|c| u64::from_le_bytes(*c)).collect();
     let sight =
         |part: &[u64]| program.places.iter().map(|p| p.name.clone()).zip(part.iter().copied()).collect();

@@ -22,7 +22,6 @@ fn rung(r: &Rung) -> g7_draw::Rung {
             Element::Coil { sign, text: name.clone() }
         }
         End::Block(b) => block(b),
-        End::Return => Element::Coil { sign: "RET", text: String::new() },
     });
     g7_draw::Rung { title: r.title.clone(), note: r.note.clone(), label: String::new(), elements }
 }

@@ -35,6 +35,13 @@ impl Ex {
         match (sign, &a, &b) {
             ("+", Ex::Int(x), Ex::Int(y)) => Ex::Int(x + y),
             ("-", Ex::Int(x), Ex::Int(y)) => Ex::Int(x - y),
+            // IronPLC has no MAX of times.
+            (">=", _, Ex::Call(name, least))
+                if name == "MAX" && matches!(least.last(), Some(Ex::Time(_))) =>
+            {
+                let each = least.iter().map(|least| Ex::op(">=", a.clone(), least.clone()));
+                Ex::all(each)
+            }
             _ => Ex::Op(sign, Box::new(a), Box::new(b)),
         }
     }

@@ -2,6 +2,8 @@
 //! and blocks for what is not Boolean. `ld` writes them as PLCopen XML,
 //! `drawn` as a picture.
 
+use std::collections::HashSet;
+
 use g7_model::{Problem, Span, StandardFunction, codes};
 
 use super::form::{self, Declared, Ex, St};
@@ -33,6 +35,9 @@ pub(crate) struct Block {
     pub(crate) inputs: Vec<(String, String)>,
     /// Where its result goes.
     pub(crate) output: Option<(String, String)>,
+    /// The memory of a coil behind a function block, which tells that it ran. The generator of Beremiz calls a block
+    /// in its turn if a coil follows it, else behind all coils.
+    pub(crate) ran: Option<String>,
 }
 
 /// The element at the right end.
@@ -40,8 +45,6 @@ pub(crate) struct Block {
 pub(crate) enum End {
     Coil(String, Coil),
     Block(Block),
-    /// The rungs behind do not run in this scan.
-    Return,
 }
 
 /// One rung.
@@ -60,30 +63,33 @@ pub(crate) struct Ladder {
     pub(crate) rungs: Vec<Rung>,
 }
 
-/// What Ladder has no form for, and the way out.
+/// A construct without a form in Ladder, and the way out.
 const SEARCH: &str = "a search for stability, which is a loop,";
 const ONE_PASS: &str = "`--profile iec61131` prints the chart with one pass in a scan; \
     `g7 compare --profiles iec60848,iec61131` tells whether its outputs stay the same";
 
-/// Equations as rungs.
+/// Equations as rungs. If `plain`, no branch has branches: what stands there gets a rung and a memory of its own,
+/// because the generator of Beremiz cannot sort such ways.
 ///
 /// # Errors
 ///
 /// A construct that Ladder cannot say.
-pub(crate) fn ladder(e: &form::Block, place: Span) -> Result<Ladder, Vec<Problem>> {
+pub(crate) fn ladder(e: &form::Block, place: Span, plain: bool) -> Result<Ladder, Vec<Problem>> {
     let mut l = Maker {
         variables: Variables::new(e.variables.clone()),
         rungs: Vec::new(),
         when: Ex::Bool(true),
         title: String::new(),
         note: String::new(),
+        kept: HashSet::new(),
+        ran: None,
+        plain,
         refused: None,
     };
     for part in &e.parts {
-        if e.safe.is_some() {
-            l.end_of_scan();
-        }
-        l.act(&Ex::Bool(true), part);
+        // Not a RETURN, which the generator of Beremiz leaves out.
+        let when = if e.safe.is_some() { Ex::var("FAULT").not() } else { Ex::Bool(true) };
+        l.act(&when, part);
         if let Some(safe) = &e.safe {
             l.remark(&St::Note(FAULT_COMES.to_owned()));
             l.act(&Ex::var("FAULT"), safe);
@@ -108,16 +114,16 @@ struct Maker {
     /// Title and comment of the next rung.
     title: String,
     note: String,
+    /// The memories of conditions, each of which one rung writes.
+    kept: HashSet<String>,
+    /// The memory of the coils behind function blocks.
+    ran: Option<String>,
+    /// No branch has branches.
+    plain: bool,
     refused: Option<&'static str>,
 }
 
 impl Maker {
-    /// The rungs behind run only while no fault has come.
-    fn end_of_scan(&mut self) {
-        let net = Net::Contact { name: "FAULT".to_owned(), negated: false };
-        self.push(net, End::Return);
-    }
-
     fn remark(&mut self, s: &St) {
         match s {
             St::Title(text) => self.title.clone_from(text),
@@ -146,9 +152,11 @@ impl Maker {
     fn kept(&mut self, e: &Ex) -> Ex {
         match e {
             Ex::Bool(_) => e.clone(),
+            Ex::Var(name) if self.kept.contains(name) => e.clone(),
             e => {
                 let name = self.variables.memory("BOOL");
                 self.coil(e, &name, Coil::Plain);
+                self.kept.insert(name.clone());
                 Ex::Var(name)
             }
         }
@@ -191,7 +199,10 @@ impl Maker {
                     for (formal, e) in inputs {
                         operands.push((formal.clone(), self.operand(e)));
                     }
-                    let block = Block { ty, instance: Some(name.clone()), inputs: operands, output: None };
+                    let ran = self.ran.take().unwrap_or_else(|| self.variables.memory("BOOL"));
+                    self.ran = Some(ran.clone());
+                    let instance = Some(name.clone());
+                    let block = Block { ty, instance, inputs: operands, output: None, ran: Some(ran) };
                     self.block(&when, block);
                 }
                 St::Until(..) => {
@@ -221,9 +232,9 @@ impl Maker {
             return match e {
                 Ex::Bool(on) => self.coil(when, to, if *on { Coil::Set } else { Coil::Reset }),
                 e => {
-                    let (when, e) = (self.kept(when), self.kept(e));
-                    self.coil(&when.clone().and(e.clone()), to, Coil::Set);
-                    self.coil(&when.and(e.not()), to, Coil::Reset);
+                    let when = self.kept(when);
+                    let holds = when.clone().not().and(place.clone());
+                    self.coil(&when.and(e.clone()).or(holds), to, Coil::Plain);
                 }
             };
         }
@@ -239,6 +250,7 @@ impl Maker {
             instance: None,
             inputs,
             output: None,
+            ran: None,
         };
         match e {
             Ex::Op(sign, a, b) => {
@@ -310,20 +322,25 @@ impl Maker {
         match e {
             Ex::Bool(b) => (*b != negated).then_some(Net::Wire),
             Ex::Not(e) => self.net(e, !negated),
+            Ex::And(list) | Ex::Or(list) if matches!(e, Ex::And(_)) != negated => {
+                let parts: Option<Vec<Net>> = list.iter().map(|e| self.net(e, negated)).collect();
+                Some(series(parts?))
+            }
             Ex::And(list) | Ex::Or(list) => {
-                let parts: Vec<Option<Net>> = list.iter().map(|e| self.net(e, negated)).collect();
-                let series = matches!(e, Ex::And(_)) != negated;
-                if series {
-                    let parts: Option<Vec<Net>> = parts.into_iter().collect();
-                    return Some(Net::Series(parts?));
+                let mut parts = Vec::new();
+                for e in list {
+                    match self.net(e, negated) {
+                        Some(Net::Parallel(inner)) => parts.extend(inner),
+                        net => parts.extend(net.map(|net| self.branch(net))),
+                    }
                 }
-                let parts: Vec<Net> = parts.into_iter().flatten().collect();
-                if parts.is_empty() { None } else { Some(Net::Parallel(parts)) }
+                if parts.is_empty() { None } else { Some(parallel(parts)) }
             }
             Ex::Xor(a, b) => {
                 let (a0, a1) = (self.net(a, false)?, self.net(a, true)?);
                 let (b0, b1) = (self.net(b, negated)?, self.net(b, !negated)?);
-                Some(Net::Parallel(vec![Net::Series(vec![a0, b1]), Net::Series(vec![a1, b0])]))
+                let one = self.branch(series(vec![a0, b1]));
+                Some(Net::Parallel(vec![one, self.branch(series(vec![a1, b0]))]))
             }
             Ex::Var(_) | Ex::Index(..) => Some(Net::Contact { name: expression(e), negated }),
             other => {
@@ -331,5 +348,49 @@ impl Maker {
                 Some(Net::Contact { name, negated })
             }
         }
+    }
+
+    /// A network as a branch.
+    fn branch(&mut self, net: Net) -> Net {
+        if !self.plain || !has_branches(&net) {
+            return net;
+        }
+        let name = self.variables.memory("BOOL");
+        self.push(net, End::Coil(name.clone(), Coil::Plain));
+        Net::Contact { name, negated: false }
+    }
+}
+
+fn has_branches(net: &Net) -> bool {
+    match net {
+        Net::Wire | Net::Contact { .. } => false,
+        Net::Series(list) => list.iter().any(has_branches),
+        Net::Parallel(_) => true,
+    }
+}
+
+/// Parts of a series, without a series in it.
+fn series(parts: Vec<Net>) -> Net {
+    let mut list = Vec::new();
+    for part in parts {
+        match part {
+            Net::Wire => {}
+            Net::Series(inner) => list.extend(inner),
+            other => list.push(other),
+        }
+    }
+    match list.len() {
+        0 => Net::Wire,
+        1 => list.remove(0),
+        _ => Net::Series(list),
+    }
+}
+
+/// Branches, which are a wire if one of them is.
+fn parallel(mut list: Vec<Net>) -> Net {
+    match list.len() {
+        _ if list.contains(&Net::Wire) => Net::Wire,
+        1 => list.remove(0),
+        _ => Net::Parallel(list),
     }
 }

@@ -116,25 +116,24 @@ pub(crate) fn size(net: &Net) -> (usize, usize) {
     }
 }
 
-/// The network behind a contact that is always on, or nothing if it needs none. The generator of Beremiz fails where
-/// a lone contact and a series stand side by side at the left rail.
-fn begun(net: &Net) -> Option<Net> {
-    let on = || Net::Contact { name: "TRUE".into(), negated: false };
-    ends(net).is_none().then(|| Net::Series(vec![on(), net.clone()]))
-}
-
-/// How a network that begins at the left rail ends: true in lone contacts, false in series, None in both.
-fn ends(net: &Net) -> Option<bool> {
+/// The network as the generator of Beremiz takes it. That generator sorts the ways that meet, and cannot compare a lone
+/// contact at the left rail with a series: a contact `TRUE` stands before the lone one.
+fn sortable(net: &Net) -> Net {
     match net {
-        Net::Wire | Net::Contact { .. } => Some(true),
-        Net::Series(list) => match list.split_first() {
-            Some((first, rest)) => ends(first).map(|alone| alone && rest.is_empty()),
-            None => Some(true),
-        },
+        Net::Wire | Net::Contact { .. } => net.clone(),
+        Net::Series(list) => {
+            let first = list.iter().take(1).map(sortable);
+            Net::Series(first.chain(list.iter().skip(1).cloned()).collect())
+        }
         Net::Parallel(list) => {
-            let mut all = list.iter().map(ends);
-            let first = all.next()?;
-            if all.all(|e| e == first) { first } else { None }
+            let alone = |net: &Net| matches!(net, Net::Contact { .. });
+            if list.iter().all(alone) {
+                return net.clone();
+            }
+            let on = || Net::Contact { name: "TRUE".into(), negated: false };
+            let begun =
+                |net: &Net| if alone(net) { Net::Series(vec![on(), net.clone()]) } else { net.clone() };
+            Net::Parallel(list.iter().map(begun).collect())
         }
     }
 }
@@ -182,8 +181,7 @@ impl Drawing {
             self.draw(comment.child(at(16, y)).child(Element::new("content").child(paragraph(note))));
             y += 24;
         }
-        let begun = begun(&r.net);
-        let net = begun.as_ref().unwrap_or(&r.net);
+        let net = &sortable(&r.net);
         let (columns, rows) = size(net);
         let high = rows * HIGH;
         let (rail, left) = self.object("leftPowerRail");
@@ -195,15 +193,11 @@ impl Drawing {
         let (last, tall) = match &r.end {
             End::Coil(name, coil) => (self.coil(name, *coil, &ends, x, y), HIGH),
             End::Block(block) => self.block(block, &ends, x, y),
-            End::Return => (self.leave(&ends, x, y), HIGH),
         };
-        if r.end == End::Return {
-            return y + high.max(tall);
-        }
         let right = sized(self.object("rightPowerRail").1, high, 8);
         let formal = match &r.end {
-            End::Coil(..) | End::Return => None,
-            End::Block(_) => Some("ENO"),
+            End::Block(block) if block.ran.is_none() => Some("ENO"),
+            End::Coil(..) | End::Block(_) => None,
         };
         let place = (x + 3 * WIDE, y);
         let from = self.connection(last, formal, (place.0, y + 16));
@@ -246,14 +240,12 @@ impl Drawing {
         }
     }
 
-    fn leave(&mut self, from: &[usize], x: usize, y: usize) -> usize {
-        let (id, leave) = self.object("return");
+    fn coil(&mut self, name: &str, coil: Coil, from: &[usize], x: usize, y: usize) -> usize {
         let links = self.links(from, (x, y + 8));
-        self.draw(sized(leave, 16, 48).child(at(x, y)).child(point_in(8, links)));
-        id
+        self.coil_behind(name, coil, links, x, y)
     }
 
-    fn coil(&mut self, name: &str, coil: Coil, from: &[usize], x: usize, y: usize) -> usize {
+    fn coil_behind(&mut self, name: &str, coil: Coil, links: Vec<Element>, x: usize, y: usize) -> usize {
         let (id, element) = self.object("coil");
         let mut element = element.with("negated", false);
         match coil {
@@ -261,14 +253,14 @@ impl Drawing {
             Coil::Set => element.set("storage", "set"),
             Coil::Reset => element.set("storage", "reset"),
         }
-        let ports = [point_in(8, self.links(from, (x, y + 8))), point_out(24, 8)];
+        let ports = [point_in(8, links), point_out(24, 8)];
         self.out(id, None, (x + 24, y + 8));
         let element = sized(element, 16, 24).child(at(x, y)).children(ports);
         self.draw(element.child(Element::with_text("variable", name)));
         id
     }
 
-    /// A block with its inputs and output; its number and height.
+    /// A block with its inputs and output; the number of the last element and the height.
     fn block(&mut self, b: &Block, from: &[usize], x: usize, y: usize) -> (usize, usize) {
         // The block stands behind the column of its operands.
         let left = x + WIDE;
@@ -299,6 +291,10 @@ impl Drawing {
             let out = sized(self.object("outVariable").1, 16, 96).child(at(left + WIDE, y + 24));
             let from = self.connection(id, Some(formal), (left + WIDE, y + 32));
             self.draw(out.child(point_in(8, [from])).child(Element::with_text("expression", to)));
+        }
+        if let Some(ran) = &b.ran {
+            let link = self.connection(id, Some("ENO"), (left + WIDE, y + 8));
+            return (self.coil_behind(ran, Coil::Plain, vec![link], left + WIDE, y), high);
         }
         (id, high)
     }
@@ -346,10 +342,10 @@ mod tests {
             series(&[c("d"), mixed.clone()]),
         ];
         for net in plain {
-            assert_eq!(begun(&net), None, "{net:?}");
+            assert_eq!(sortable(&net), net);
         }
-        for net in [mixed.clone(), series(&[mixed.clone(), c("d")]), parallel(&[mixed, c("d")])] {
-            assert_eq!(begun(&net), Some(series(&[c("TRUE"), net.clone()])));
-        }
+        let begun = parallel(&[series(&[c("TRUE"), c("a")]), series(&[c("b"), c("c")])]);
+        assert_eq!(sortable(&mixed), begun);
+        assert_eq!(sortable(&series(&[mixed, c("d")])), series(&[begun, c("d")]));
     }
 }

@@ -183,7 +183,7 @@ pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Resul
         Form::Logix => families::logix(&block, place)?,
         Form::Unity => families::unity(&block, place)?,
         Form::Ld | Form::Drawing => {
-            let ladder = ladder::ladder(&block, place)?;
+            let ladder = ladder::ladder(&block, place, form == Form::Ld)?;
             if form == Form::Ld { ld::print(&block.name, &ladder) } else { drawn::draw(&block.name, &ladder) }
         }
     };

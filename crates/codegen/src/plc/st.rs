@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use g7_model::Nanos;
+
 use super::form::{Block, Class, Declared, Ex, St};
 
 /// The text before the safe values.
@@ -219,7 +221,7 @@ pub(crate) fn expression(e: &Ex) -> String {
         Ex::Bool(false) => "FALSE".into(),
         Ex::Int(n) => n.to_string(),
         Ex::Real(x) => real(*x),
-        Ex::Time(time) => format!("{time:#}"),
+        Ex::Time(amount) => time(*amount),
         Ex::Var(name) => name.clone(),
         Ex::Index(name, i) => format!("{name}[{}]", expression(i)),
         Ex::Not(inner) => format!("NOT {}", within(inner, 9)),
@@ -239,11 +241,48 @@ pub(crate) fn expression(e: &Ex) -> String {
     }
 }
 
+/// A time in one unit: `T#1500ms`, `T#90s`. IronPLC reads no second unit behind a first.
+fn time(amount: Nanos) -> String {
+    let count = amount.count();
+    let units = Nanos::UNITS.iter().take(4).find(|(_, size)| count != 0 && count % size.count() == 0);
+    if let Some((unit, size)) = units {
+        return format!("T#{}{unit}", count / size.count());
+    }
+    let (whole, part) = (count / 1_000_000, (count % 1_000_000).unsigned_abs());
+    let sign = if count < 0 { "-" } else { "" };
+    let part = format!(".{part:06}");
+    format!("T#{sign}{}{}ms", whole.unsigned_abs(), part.trim_end_matches('0').trim_end_matches('.'))
+}
+
 pub(crate) fn real(x: f64) -> String {
     let text = format!("{x:?}");
     match text.split_once('e') {
         Some((m, e)) if m.contains('.') => format!("{m}E{e}"),
         Some((m, e)) => format!("{m}.0E{e}"),
         None => text,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_has_one_unit() {
+        let rows = [
+            (0, "T#0ms"),
+            (1_500_000_000, "T#1500ms"),
+            (90_000_000_000, "T#90s"),
+            (5_400_000_000_000, "T#90m"),
+            (90_000_000_000_000, "T#25h"),
+            (172_800_000_000_000, "T#2d"),
+            (2_000_000_500, "T#2000.0005ms"),
+            (-1_000_500_000, "T#-1000.5ms"),
+            (-250_000, "T#-0.25ms"),
+            (-3_000_000_000, "T#-3s"),
+        ];
+        for (count, text) in rows {
+            assert_eq!(time(Nanos::new(count)), text);
+        }
     }
 }

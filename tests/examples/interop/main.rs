@@ -1,0 +1,35 @@
+//! `interop FILE…`: writes charts for other tools, has these take them, and prints a table of what was accepted:
+//!
+//! - PLCopen XML, opened by Beremiz and OpenPLC; matiec compiles what they make, and it runs beside the engine; the
+//!   schema of TC6 is asked as well;
+//! - the same with Ladder (`gen ld`);
+//! - text as SFC, Structured Text and Instruction List, compiled by matiec; IronPLC checks the first two;
+//! - XMI, loaded by pyecore with the meta-model of the corpus;
+//! - C and Rust, taken by compilers.
+//!
+//! Files may be charts, files of other tools and conformance cases, or folders of them. Whatever G7
+//! refuses with a reason is not tried; a second table has each reason with its count, its first file and who is right.
+//! Each call of a program has a limit of time, and each row has one (`G7_LIMIT`, in seconds), behind which the rest is
+//! counted as not tried.
+#![allow(clippy::disallowed_methods, clippy::print_stdout, reason = "a tool: it starts other programs")]
+
+mod charts;
+mod code;
+mod models;
+mod projects;
+mod reasons;
+mod table;
+mod texts;
+
+use std::path::PathBuf;
+
+fn main() {
+    let arguments: Vec<PathBuf> = std::env::args_os().skip(1).map(PathBuf::from).collect();
+    let charts = charts::read(&arguments);
+    let mut table = table::Table::new(&charts);
+    projects::rows(&mut table);
+    texts::rows(&mut table);
+    models::rows(&mut table);
+    code::rows(&mut table);
+    table.end();
+}

@@ -1,0 +1,35 @@
+//! Who is right where something was not taken, reason by reason.
+
+/// The beginning of a reason, without the names of one chart, so that equal reasons are counted together.
+pub(crate) fn nameless(reason: &str) -> String {
+    let parts = reason.split('`').enumerate();
+    let parts: String = parts.map(|(i, part)| if i % 2 == 1 { "`…`" } else { part }).collect();
+    let placeless: Vec<&str> = parts.split_whitespace().filter(|word| !word.starts_with('/')).collect();
+    placeless.join(" ").replace('|', "/").chars().take(120).collect()
+}
+
+/// Words of a reason, and who is right. The first row that fits counts.
+const RIGHT: [(&[&str], &str); 14] = [
+    (&["refused by G7", "which IEC 61131-3 does not have"], "G7: the language has no such construct"),
+    (&["refused by G7", "the meta-model"], "G7: the meta-model has no such thing"),
+    (&["refused by G7", "stability"], "G7: Ladder has no loop"),
+    (&["refused by G7", "loop"], "G7: Ladder has no loop"),
+    (&["refused by G7"], "a limit of G7: a form could be found"),
+    (
+        &["IronPLC on SFC text", "'END_STEP'"],
+        "G7: the standard has steps without actions, and a `;` behind the last action of an initial step",
+    ),
+    (&["IronPLC on SFC text", "')'"], "G7: IronPLC asks for a time at P1 and P0"),
+    (&["IronPLC on SFC text", "'#'"], "G7: IronPLC reads no time at L and D"),
+    (&["IronPLC on SFC text", "P4007"], "G7: IronPLC knows no S.X and S.T of a step"),
+    (&["IronPLC on SFC text"], "G7: IronPLC reads a part of SFC text and runs none of it"),
+    (&["matiec", "unknown error"], "not judged: matiec names no reason"),
+    (&["run:"], "a difference that is not explained"),
+    (&["missing"], "nobody: it is not installed"),
+    (&[], "a form of G7 that the tool does not take, or a fault of the tool"),
+];
+
+/// Who is right where something was not taken.
+pub(crate) fn who(reason: &str) -> &'static str {
+    RIGHT.iter().find(|(words, _)| words.iter().all(|w| reason.contains(w))).map_or("", |(_, who)| who)
+}
