@@ -14,7 +14,7 @@ use g7_tests::generated::cases::Folder;
 use crate::charts::Chart;
 use crate::reasons::{nameless, who};
 
-/// What G7 wrote of a chart, or the reason why it writes none.
+/// The text that G7 wrote of a chart, or the reason why it writes none.
 pub(crate) type Written = Result<String, String>;
 
 /// A text, if nothing is lost in it; otherwise the first loss.

@@ -35,9 +35,9 @@ pub(crate) struct Block {
     pub(crate) inputs: Vec<(String, String)>,
     /// Where its result goes.
     pub(crate) output: Option<(String, String)>,
-    /// The memory of a coil behind a function block, which tells that it ran. The generator of Beremiz calls a block
-    /// in its turn if a coil follows it, else behind all coils.
-    pub(crate) ran: Option<String>,
+    /// The output of a function block, and the memory of a coil behind it, which nothing reads. The generator of
+    /// Beremiz calls a block in its turn if a coil follows it, else behind all coils.
+    pub(crate) behind: Option<(&'static str, String)>,
 }
 
 /// The element at the right end.
@@ -82,7 +82,7 @@ pub(crate) fn ladder(e: &form::Block, place: Span, plain: bool) -> Result<Ladder
         title: String::new(),
         note: String::new(),
         kept: HashSet::new(),
-        ran: None,
+        behind: None,
         plain,
         refused: None,
     };
@@ -117,7 +117,7 @@ struct Maker {
     /// The memories of conditions, each of which one rung writes.
     kept: HashSet<String>,
     /// The memory of the coils behind function blocks.
-    ran: Option<String>,
+    behind: Option<String>,
     /// No branch has branches.
     plain: bool,
     refused: Option<&'static str>,
@@ -199,10 +199,11 @@ impl Maker {
                     for (formal, e) in inputs {
                         operands.push((formal.clone(), self.operand(e)));
                     }
-                    let ran = self.ran.take().unwrap_or_else(|| self.variables.memory("BOOL"));
-                    self.ran = Some(ran.clone());
+                    let memory = self.behind.take().unwrap_or_else(|| self.variables.memory("BOOL"));
+                    self.behind = Some(memory.clone());
+                    let behind = Some((first_output(&ty), memory));
                     let instance = Some(name.clone());
-                    let block = Block { ty, instance, inputs: operands, output: None, ran: Some(ran) };
+                    let block = Block { ty, instance, inputs: operands, output: None, behind };
                     self.block(&when, block);
                 }
                 St::Until(..) => {
@@ -250,7 +251,7 @@ impl Maker {
             instance: None,
             inputs,
             output: None,
-            ran: None,
+            behind: None,
         };
         match e {
             Ex::Op(sign, a, b) => {
@@ -358,6 +359,15 @@ impl Maker {
         let name = self.variables.memory("BOOL");
         self.push(net, End::Coil(name.clone(), Coil::Plain));
         Net::Contact { name, negated: false }
+    }
+}
+
+/// The first Boolean output of a kind of function block.
+fn first_output(kind: &str) -> &'static str {
+    match kind {
+        "CTUD" => "QU",
+        "SR" | "RS" => "Q1",
+        _ => "Q",
     }
 }
 

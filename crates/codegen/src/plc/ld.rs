@@ -196,7 +196,7 @@ impl Drawing {
         };
         let right = sized(self.object("rightPowerRail").1, high, 8);
         let formal = match &r.end {
-            End::Block(block) if block.ran.is_none() => Some("ENO"),
+            End::Block(block) if block.behind.is_none() => Some("ENO"),
             End::Coil(..) | End::Block(_) => None,
         };
         let place = (x + 3 * WIDE, y);
@@ -283,6 +283,7 @@ impl Drawing {
         let high = 24 * (b.inputs.len() + 1) + 8;
         let mut outputs = Element::new("outputVariables").child(pin("ENO", point_out(96, 8)));
         outputs.extend(b.output.iter().map(|(formal, _)| pin(formal, point_out(96, 32))));
+        outputs.extend(b.behind.iter().map(|(formal, _)| pin(formal, point_out(96, 32))));
         let ports = [inputs, Element::new("inOutVariables"), outputs];
         self.draw(sized(block, high, 96).child(at(left, y)).children(ports));
         self.out(id, Some("ENO"), (left + 96, y + 8));
@@ -292,9 +293,10 @@ impl Drawing {
             let from = self.connection(id, Some(formal), (left + WIDE, y + 32));
             self.draw(out.child(point_in(8, [from])).child(Element::with_text("expression", to)));
         }
-        if let Some(ran) = &b.ran {
-            let link = self.connection(id, Some("ENO"), (left + WIDE, y + 8));
-            return (self.coil_behind(ran, Coil::Plain, vec![link], left + WIDE, y), high);
+        if let Some((formal, memory)) = &b.behind {
+            self.out(id, Some(formal), (left + 96, y + 32));
+            let link = self.connection(id, Some(formal), (left + WIDE, y + 32));
+            return (self.coil_behind(memory, Coil::Plain, vec![link], left + WIDE, y + 24), high);
         }
         (id, high)
     }
