@@ -60,7 +60,7 @@ pub(crate) struct Ladder {
     pub(crate) rungs: Vec<Rung>,
 }
 
-/// What Ladder has no form for, and the way out.
+/// A part that Ladder has no form for, and the way out.
 const SEARCH: &str = "a search for stability, which is a loop,";
 const ONE_PASS: &str = "`--profile iec61131` prints the chart with one pass in a scan; \
     `g7 compare --profiles iec60848,iec61131` tells whether its outputs stay the same";
