@@ -38,7 +38,7 @@ fn seen(paths: &[PathBuf]) -> Seen {
     paths.iter().map(|path| (path.clone(), of(path))).collect()
 }
 
-/// What the system tells of some folders.
+/// The changes that the system tells of some folders.
 struct Ear {
     told: Receiver<()>,
     /// Kept, so that the channel stays open where there is no watcher.
@@ -124,11 +124,12 @@ pub(super) fn for_ever(
     }
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
+    #[cfg(target_os = "linux")]
     fn the_system_tells_of_files_that_are_written_or_made_in_their_folders() {
         let folder = std::env::temp_dir().join(format!("g7-ear-{}", std::process::id()));
         std::fs::create_dir_all(&folder).expect("a folder");
