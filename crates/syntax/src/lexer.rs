@@ -276,7 +276,7 @@ impl<'a> Lexer<'a> {
             }
         }
         let text = self.text.get(start..self.pos).unwrap_or_default();
-        let text = if text.contains('\r') { text.replace("\r\n", say!("\n")).into() } else { text.into() };
+        let text = if text.contains('\r') { text.replace("\r\n", "\n").into() } else { text.into() };
         self.notes.push(Note { text, at: self.span(start), behind: None });
         newline
     }

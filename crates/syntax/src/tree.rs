@@ -17,7 +17,7 @@ use std::ops::Range;
 use crate::decode;
 use crate::parse::marks::{Change, Level, Mark};
 use crate::parse::reading::{Begin, Reading, read};
-use g7_model::{ChartItem, Document, FileId, Item, PlaceAt, Problem, Said, places::Shift};
+use g7_model::{ChartItem, Document, FileId, Item, PlaceAt, Problem, places::Shift};
 
 /// A text, its document and its problems.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -82,7 +82,7 @@ impl Tree {
         self.marks.reread = 0;
         // From the last to the first, so that the places of the others stay.
         for (range, words) in self.joined(edits).into_iter().rev() {
-            self.replace(range, words);
+            self.replace(range, &words);
         }
         true
     }
@@ -122,7 +122,7 @@ impl Tree {
     }
 
     /// Makes one change and reads what it touches.
-    fn replace(&mut self, range: Range<usize>, words: Said) {
+    fn replace(&mut self, range: Range<usize>, words: &str) {
         let change = Change { start: range.start, end: range.end, now: range.start + words.len() };
         let begin = self.marks.list.partition_point(|m| m.start() < change.start);
         let begin = (0..begin)

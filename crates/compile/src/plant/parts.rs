@@ -2,7 +2,7 @@
 //! track, its position. Place 0 holds the part that came first; when a part in the middle leaves,
 //! those behind it move up.
 
-use g7_model::{BinaryOp, Expr, Parts, Place, Said, Stmt, StmtKind, Type, VarDecl, VarKind};
+use g7_model::{BinaryOp, Expr, Parts, Place, Stmt, StmtKind, Type, VarDecl, VarKind};
 
 use super::build::At;
 

@@ -98,7 +98,7 @@ fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
             continue;
         }
         if plan.sections.is_empty() {
-            add(page, say!(""), &mut pages);
+            add(page, "", &mut pages);
         } else if let Some(step) = plan.steps.values().find(|s| s.page == page) {
             let what = say!("no section runs page {page}; its chart is left out");
             report.say(&codes::LEFT_OUT, &step.at, what);

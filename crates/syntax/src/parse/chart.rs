@@ -297,7 +297,7 @@ impl Parser<'_> {
                 at,
                 say!("a name with a blank or another sign stands in back-ticks"),
             )
-            .help(say!("write `` `{text}` `` or `{}`", text.replace([' ', '-'], say!("_"))))
+            .help(say!("write `` `{text}` `` or `{}`", text.replace([' ', '-'], "_")))
         });
     }
 

@@ -18,7 +18,7 @@ impl Parser<'_> {
     /// `"…"`, if it stands here.
     pub(super) fn comment_if(&mut self) -> Option<Box<str>> {
         if self.at(Tok::Str) && !self.cur.newline {
-            let text = self.slice(self.cur).trim_matches('\'').replace('"', say!("\\\""));
+            let text = self.slice(self.cur).trim_matches('\'').replace('"', "\\\"");
             self.slip_to(self.here(), say!("a comment stands in double quotes"), &format!("\"{text}\""));
             self.bump();
             return Some(text.into());

@@ -297,7 +297,7 @@ impl<'a> Parser<'a> {
             _ => {
                 let text = self.slice(self.cur);
                 let short: String = text.chars().take(24).collect();
-                let dots = if short.len() < text.len() { say!("…") } else { say!("") };
+                let dots = if short.len() < text.len() { "…" } else { "" };
                 say!("`{short}{dots}`")
             }
         }

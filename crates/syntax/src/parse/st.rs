@@ -68,7 +68,7 @@ impl Parser<'_> {
         let from = self.cur.end as usize;
         let raw = self.lexer.raw_body(self.cur.end);
         let statements = self.other_body(lang, from, from + raw.len());
-        let text = if raw.contains('\r') { raw.replace("\r\n", say!("\n")).into() } else { raw.into() };
+        let text = if raw.contains('\r') { raw.replace("\r\n", "\n").into() } else { raw.into() };
         self.bump();
         self.close(Tok::RBrace, say!("`}}`"), open);
         let at = self.since(start).into();
