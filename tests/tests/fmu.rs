@@ -169,7 +169,7 @@ fn run(subject: &Subject, seed: u64, scans: usize) -> Run {
 /// The files of an FMU in a folder, with the library for this machine.
 fn unpacked(folder: &Path, subject: &Subject, version: Version) -> Result<(), String> {
     let made = fmu(&subject.compiled, version, "chart", &subject.text)
-        .map_err(|p| p.iter().map(|p| p.what.clone()).collect::<Vec<_>>().join("; "))?;
+        .map_err(|p| p.iter().map(|p| p.what.to_string()).collect::<Vec<_>>().join("; "))?;
     for file in &made.files {
         let path = folder.join(&file.name);
         std::fs::create_dir_all(path.parent().unwrap_or(folder)).map_err(|e| e.to_string())?;

@@ -154,8 +154,8 @@ impl<'a> Gen<'a> {
             self.room.clock.unit(),
             longest / 1_000_000_000
         );
-        if self.problems.iter().all(|p| p.what != text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
+        if self.problems.iter().all(|p| *p.what != *text) {
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
         }
     }
 
@@ -173,8 +173,8 @@ impl<'a> Gen<'a> {
     /// Reports a construct that the language of the code cannot say.
     pub(crate) fn cannot(&mut self, what: &str) {
         let text = format!("{what} cannot be printed as code");
-        if self.problems.iter().all(|p| p.what != text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
+        if self.problems.iter().all(|p| *p.what != *text) {
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
         }
     }
 

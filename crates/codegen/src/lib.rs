@@ -177,7 +177,7 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
     let mut g = Gen::new(compiled, options.source, options.room);
     if options.style == Style::Flat && options.room != Room::default() {
         let text = "code for little memory is in the structured style alone";
-        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), g7_model::Said::foreign(text))]);
     }
     g.judge_initial_times();
     match options.style {
@@ -193,7 +193,7 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
         problems.push(Problem::new(
             &codes::NOT_CARRIED,
             at,
-            "reals are turned into text or back: C has no way for that without a library",
+            g7_model::say!("reals are turned into text or back: C has no way for that without a library"),
         ));
     }
     if let Some(at) = g.math {
@@ -204,7 +204,7 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
             Language::Rust => ("the crate `libm`", "add it to the dependencies"),
         };
         let text = format!("the functions of LREAL come from {what}; {way}");
-        problems.push(Problem::new(&codes::DIFFERENT, at, text));
+        problems.push(Problem::new(&codes::DIFFERENT, at, g7_model::Said::foreign(text)));
     }
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         return Err(problems);
@@ -214,14 +214,18 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
         (None, Ok(helpers)) => helpers,
         (Some(name), _) | (None, Err(name)) => {
             let text = format!("the code asks for `{name}`, which is not there");
-            return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+            return Err(vec![Problem::new(
+                &codes::NOT_CARRIED,
+                Span::default(),
+                g7_model::Said::foreign(text),
+            )]);
         }
     };
     let name = file_name(options.name);
     if parts == Parts::Apart && ["g7", "g7_math"].contains(&name.as_str()) {
         let text =
             format!("a chart called `{name}` would have the files of all charts; give its code another name");
-        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), g7_model::Said::foreign(text))]);
     }
     let files = match options.language {
         Language::C => files::c(&module, &helpers, &name, options.room, parts),

@@ -218,8 +218,8 @@ impl Places for Gen<'_> {
 
     fn cannot(&mut self, what: &str) {
         let text = format!("{what} cannot be printed as code");
-        if self.problems.iter().all(|p| p.what != text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
+        if self.problems.iter().all(|p| *p.what != *text) {
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
         }
     }
 }

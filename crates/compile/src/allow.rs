@@ -6,7 +6,7 @@
 //! text, so the language and its printer need no form for them (`docs/decisions/050-allow.md`).
 
 use g7_model::codes::{self, Code};
-use g7_model::{Chart, ChartItem, Document, Item, Note, Problem, Severity, Span};
+use g7_model::{Chart, ChartItem, Document, Item, Note, Problem, Said, Severity, Span, say};
 
 /// A silence: its note, the code and the bytes that it covers.
 struct Silence {
@@ -38,8 +38,8 @@ pub(crate) fn apply(doc: &Document, problems: &mut Vec<Problem>) {
             p.code != silence.code || !inside || p.at.file != silence.covers.file
         });
         if whole && problems.len() == before {
-            let what = format!("nothing here reports `{}`", silence.code.id);
-            wrong.push(Problem::new(&codes::NEEDLESS_ALLOW, silence.at, what).help("delete this note"));
+            let what = say!("nothing here reports `{}`", silence.code.id);
+            wrong.push(Problem::new(&codes::NEEDLESS_ALLOW, silence.at, what).help(say!("delete this note")));
         }
     }
     problems.extend(wrong);
@@ -62,16 +62,19 @@ fn read(doc: &Document, note: &Note) -> Option<Result<Silence, Problem>> {
     {
         return None;
     }
-    let refused = |what: String, help: &str| Some(Err(Problem::new(&codes::BAD_ALLOW, at, what).help(help)));
+    let refused = |what: Said, help: Said| Some(Err(Problem::new(&codes::BAD_ALLOW, at, what).help(help)));
     let Some(code) = codes::find(id) else {
-        return refused(format!("there is no code `{id}`"), "write the code of the warning, such as `G0230`");
+        return refused(
+            say!("there is no code `{id}`"),
+            say!("write the code of the warning, such as `G0230`"),
+        );
     };
     if code.severity == Severity::Error {
-        return refused(format!("`{id}` is an error and cannot be allowed"), "mend what it is about");
+        return refused(say!("`{id}` is an error and cannot be allowed"), say!("mend what it is about"));
     }
     if reason.trim().is_empty() {
-        let help = format!("write `// allow {id}: ` and why it is meant so");
-        return refused(format!("there is no reason why `{id}` is allowed here"), &help);
+        let help = say!("write `// allow {id}: ` and why it is meant so");
+        return refused(say!("there is no reason why `{id}` is allowed here"), help);
     }
     let covers = match note.behind {
         _ if in_file => Some(Span { start: 0, end: u32::MAX, ..at }),
@@ -79,7 +82,10 @@ fn read(doc: &Document, note: &Note) -> Option<Result<Silence, Problem>> {
         None => behind(doc, at),
     };
     let Some(covers) = covers else {
-        return refused("no item follows this note".into(), "write it before an item, or `allow in file`");
+        return refused(
+            say!("no item follows this note"),
+            say!("write it before an item, or `allow in file`"),
+        );
     };
     Some(Ok(Silence { at, code, covers }))
 }

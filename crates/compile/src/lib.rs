@@ -21,7 +21,7 @@ mod stages;
 pub mod symbols;
 pub mod tree;
 
-use g7_model::{Document, Problem, Span, codes};
+use g7_model::{Document, Problem, Span, codes, say};
 
 pub use references::{Definition, References, references};
 pub use stages::{Compiled, compile, compile_as, compile_with};
@@ -44,8 +44,8 @@ pub fn check(doc: &Document) -> Vec<Problem> {
 /// The problem of a document with nothing in it but notes.
 pub fn empty(doc: &Document) -> Option<Problem> {
     let file = doc.notes.first().map(|n| n.at.file).unwrap_or_default();
-    let what = "there is nothing in this file";
-    let help = "a chart begins with `chart Main { … }`; `g7 new` writes one";
+    let what = say!("there is nothing in this file");
+    let help = say!("a chart begins with `chart Main {{ … }}`; `g7 new` writes one");
     let problem = || Problem::new(&codes::EMPTY_FILE, Span { file, start: 0, end: 0 }, what).help(help);
     doc.items.is_empty().then(problem)
 }

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use g7_engine::{Code, Program};
-use g7_model::{Document, Expr, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes};
+use g7_model::{Document, Expr, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
 use crate::{allow, check, ir, lower, resolve};
@@ -91,8 +91,9 @@ fn properties<'d>(doc: &'d Document, unit: &mut ir::Unit, scopes: &mut resolve::
             problems.append(&mut wrong);
             let is_assumed = matches!(property.kind, PropertyKind::Assume(_));
             if is_assumed && expr.is_some_and(|e| !reads_input(unit, &e)) {
-                let what = "an assumption tells what values inputs may have, and this one reads no input";
-                let help = "name an input in it, or write what the chart does as `prove always …`";
+                let what =
+                    say!("an assumption tells what values inputs may have, and this one reads no input");
+                let help = say!("name an input in it, or write what the chart does as `prove always …`");
                 problems.push(Problem::new(&codes::ASSUMPTION, property.at.0, what).help(help));
             }
         }

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{codes, say};
 
 use g7_iec::report::Report;
 
@@ -37,9 +37,11 @@ impl Flow {
     /// Adds a line; reports a line that no chart can have.
     pub(crate) fn line(&mut self, from: Node, to: Node, at: &Range<usize>, report: &mut Report) {
         let wrong = match (from, to) {
-            (Node::Step(_), Node::Step(_)) => "a line from a step to a step without a transition between",
+            (Node::Step(_), Node::Step(_)) => {
+                say!("a line from a step to a step without a transition between")
+            }
             (Node::Transition(_), Node::Transition(_)) => {
-                "a line from a transition to a transition without a step between"
+                say!("a line from a transition to a transition without a step between")
             }
             _ => {
                 self.out.entry(from).or_default().push(to);
@@ -58,17 +60,17 @@ impl Flow {
             let from = self.walk(index, &self.into, &mut left);
             let to = self.walk(index, &self.out, &mut left);
             if left == 0 {
-                report.element(&codes::TOO_LARGE, "line", at, "the chart has too many lines");
+                report.element(&codes::TOO_LARGE, "line", at, say!("the chart has too many lines"));
             } else if from.is_empty() && to.is_empty() {
-                report.say(&codes::OPEN_LINK, at, "a transition without any step");
+                report.say(&codes::OPEN_LINK, at, say!("a transition without any step"));
             } else if from.is_empty() {
                 report.say(
                     &codes::OPEN_LINK,
                     at,
-                    "a transition without a step before it; it is always enabled",
+                    say!("a transition without a step before it; it is always enabled"),
                 );
             } else if to.is_empty() {
-                report.say(&codes::OPEN_LINK, at, "a transition without a step behind it");
+                report.say(&codes::OPEN_LINK, at, say!("a transition without a step behind it"));
             }
             all.push(Ends { from, to });
         }

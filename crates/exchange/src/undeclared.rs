@@ -8,8 +8,8 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::codes;
 use g7_model::{
-    BinaryOp, ChartItem, Document, Expr, ExprKind, Item, Literal, Path, Span, Stmt, StmtKind, Type, UnaryOp,
-    VarDecl, VarKind,
+    BinaryOp, ChartItem, Document, Expr, ExprKind, Item, Literal, Path, Said, Span, Stmt, StmtKind, Type,
+    UnaryOp, VarDecl, VarKind, say,
 };
 
 use g7_iec::nodes;
@@ -163,7 +163,7 @@ pub(crate) fn declare(document: &mut Document, report: &mut Report) {
         told.push((named.at, format!("`{}`", named.text)));
         new.push(nodes::variable(kind, &named.text, ty, named.at));
     }
-    tell(&told, "nothing in the file declares", "they are inputs and outputs here", report);
+    tell(&told, say!("nothing in the file declares"), say!("they are inputs and outputs here"), report);
     insert(document, new);
 }
 
@@ -194,18 +194,18 @@ pub(crate) fn open(document: &mut Document, report: &mut Report) {
             v.kind = VarKind::Input;
         }
     }
-    tell(&told, "nothing in the file writes", "they are inputs here", report);
+    tell(&told, say!("nothing in the file writes"), say!("they are inputs here"), report);
 }
 
 /// Reports all of them in one message.
-fn tell(list: &[(Span, String)], why: &str, then: &str, report: &mut Report) {
+fn tell(list: &[(Span, String)], why: Said, then: Said, report: &mut Report) {
     let Some((at, _)) = list.first() else { return };
     let names: Vec<&str> = list.iter().take(MOST_NAMED).map(|(_, n)| n.as_str()).collect();
     let more = match list.len().saturating_sub(MOST_NAMED) {
-        0 => String::new(),
-        n => format!(" and {n} more"),
+        0 => Said::default(),
+        n => say!(" and {n} more"),
     };
-    let what = format!("{why} {}{more}; {then}", names.join(", "));
+    let what = say!("{why} {}{more}; {then}", Said::foreign(names.join(", ")));
     report.put(g7_model::Problem::new(&codes::DIFFERENT, *at, what));
 }
 

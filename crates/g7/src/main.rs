@@ -57,6 +57,7 @@ mod sources;
 mod station;
 mod style;
 mod testing;
+mod tongue;
 mod users;
 mod values;
 mod view;
@@ -73,6 +74,7 @@ use crate::message::talk;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
+    tongue::choose(cli.lang);
     match cli.color {
         Color::Auto => {}
         Color::Always => anstream::ColorChoice::Always.write_global(),

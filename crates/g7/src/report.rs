@@ -1,5 +1,6 @@
 //! Prints problems, for people and for programs.
 
+use crate::tongue::language;
 use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
 use g7_model::{Fix, Problem, Severity, Span, TextEdit};
 use g7_rig::testing::Unproved;
@@ -82,19 +83,22 @@ fn one(source: &Source, problem: &Problem) -> String {
     };
     let mut elements: Vec<Element<'_>> = Vec::new();
     excerpts(source, problem, &mut elements);
-    let help = problem.help.as_deref().map(|h| Level::HELP.message(h));
-    let group: Group<'_> =
-        level.primary_title(problem.what.as_str()).id(problem.code.id).elements(elements).elements(help);
+    let help = problem.help.as_ref().map(|h| Level::HELP.message(h.in_language(language())));
+    let group: Group<'_> = level
+        .primary_title(problem.what.in_language(language()))
+        .id(problem.code.id)
+        .elements(elements)
+        .elements(help);
     Renderer::styled().render(&[group])
 }
 
 /// The excerpts of the place and of the related places; places close to each other share one.
 fn excerpts<'a>(source: &'a Source, problem: &'a Problem, out: &mut Vec<Element<'a>>) {
-    let mut near: Vec<(Span, Option<&str>)> = vec![(problem.at, None)];
+    let mut near: Vec<(Span, Option<String>)> = vec![(problem.at, None)];
     let mut far = Vec::new();
     let line = |span: Span| source.line(source.range(span).start);
     for (span, there) in &problem.related {
-        let place = (*span, Some(there.as_str()));
+        let place = (*span, Some(there.in_language(language())));
         if line(*span).abs_diff(line(problem.at)) < EXCERPT / 2 {
             near.push(place)
         } else {
@@ -102,11 +106,11 @@ fn excerpts<'a>(source: &'a Source, problem: &'a Problem, out: &mut Vec<Element<
         }
     }
     for places in std::iter::once(near).chain(far) {
-        out.push(excerpt(source, &places));
+        out.push(excerpt(source, places));
     }
 }
 
-fn excerpt<'a>(source: &'a Source, places: &[(Span, Option<&'a str>)]) -> Element<'a> {
+fn excerpt<'a>(source: &'a Source, places: Vec<(Span, Option<String>)>) -> Element<'a> {
     let ranges: Vec<_> = places.iter().map(|(span, _)| clip(source, *span)).collect();
     let first = ranges.iter().map(|r| source.line(r.start)).min().unwrap_or(0);
     let last = ranges.iter().map(|r| source.line(r.end)).max().unwrap_or(first);
@@ -121,7 +125,7 @@ fn excerpt<'a>(source: &'a Source, places: &[(Span, Option<&'a str>)]) -> Elemen
         .zip(places)
         .map(|(range, (_, there))| {
             let kind = if there.is_none() { AnnotationKind::Primary } else { AnnotationKind::Context };
-            kind.span(range.start - region.start..range.end - region.start).label(*there)
+            kind.span(range.start - region.start..range.end - region.start).label(there)
         })
         .collect();
     Snippet::source(text).path(source.name.as_str()).line_start(first + 1).annotations(annotations).into()
@@ -147,24 +151,24 @@ pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
         .iter()
         .map(|(span, there)| {
             let mut place = place(source, *span);
-            place["message"] = json!(there);
+            place["message"] = json!(there.in_language(language()));
             place
         })
         .collect();
     let mut out = place(source, problem.at);
     out["code"] = json!(problem.code.id);
     out["severity"] = json!(severity);
-    out["title"] = json!(problem.code.title);
-    out["message"] = json!(problem.what);
+    out["title"] = json!(problem.code.title_in(language()));
+    out["message"] = json!(problem.what.in_language(language()));
     out["source"] = json!(problem.code.source);
-    out["help"] = json!(problem.help);
+    out["help"] = json!(problem.help.as_ref().map(|h| h.in_language(language())));
     out["related"] = json!(related);
     let edit = |e: &TextEdit| {
         let mut edit = place(source, e.at);
         edit["text"] = json!(e.text);
         edit
     };
-    let fix = |f: &Fix| json!({ "label": f.label, "sure": f.sure, "edits": f.edits.iter().map(edit).collect::<Vec<_>>() });
+    let fix = |f: &Fix| json!({ "label": f.label.in_language(language()), "sure": f.sure, "edits": f.edits.iter().map(edit).collect::<Vec<_>>() });
     out["fixes"] = problem.fixes.iter().map(fix).collect();
     out
 }

@@ -157,3 +157,20 @@ fn a_file_with_nothing_in_it_is_told() {
     let ran = folder.g7(&["check", "chart.g7"]);
     assert!(ran.out.contains("G0235"), "{}", ran.out);
 }
+
+#[test]
+fn problems_are_told_in_the_language_of_the_reader() {
+    let folder = Folder::with("chart G {\n  initial step 1 step 2\n  1 -> 2 when foo\n  2 -> 1 when X2\n}\n");
+    let told = |args: &[&str], lang: &str| folder.command(args).env("LC_ALL", lang).assert().into();
+    let french: common::Ran = told(&["check"], "fr_FR.UTF-8");
+    assert!(french.is(1).out.contains("rien ne s’appelle `foo`"), "{}", french.out);
+    let portuguese: common::Ran = told(&["check", "--lang", "pt"], "fr_FR.UTF-8");
+    assert!(portuguese.is(1).out.contains("nada se chama `foo`"), "{}", portuguese.out);
+    let english: common::Ran = told(&["check"], "de_DE.UTF-8");
+    assert!(english.is(1).out.contains("nothing is called `foo`"), "{}", english.out);
+    for format in ["json", "sarif", "github"] {
+        let ran: common::Ran = told(&["check", "--lang", "fr", "--format", format], "C");
+        assert!(ran.is(1).out.contains("rien ne s’appelle `foo`"), "{format}: {}", ran.out);
+        assert!(ran.out.contains("G0202"), "{format}: {}", ran.out);
+    }
+}

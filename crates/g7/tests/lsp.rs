@@ -42,8 +42,14 @@ struct Editor {
 
 impl Editor {
     fn new() -> Editor {
+        Editor::speaking(None)
+    }
+
+    /// An editor whose user reads a language.
+    fn speaking(locale: Option<&str>) -> Editor {
         let mut server = Command::new(cargo_bin!("g7"))
             .arg("lsp")
+            .env("LC_ALL", "C")
             .stdin(Stdio::piped())
             .stdout(Stdio::piped())
             .spawn()
@@ -51,8 +57,10 @@ impl Editor {
         let input = server.stdin.take().expect("its input");
         let output = BufReader::new(server.stdout.take().expect("its output"));
         let mut editor = Editor { server, input, output, number: 0, told: Vec::new() };
-        let hello =
-            editor.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
+        let hello = editor.ask(
+            "initialize",
+            json!({ "processId": null, "rootUri": null, "capabilities": {}, "locale": locale }),
+        );
         assert_eq!(hello["serverInfo"]["name"], "g7");
         editor.tell("initialized", json!({}));
         editor
@@ -60,12 +68,17 @@ impl Editor {
 
     /// An editor with a text that is open.
     fn with(text: &str) -> Editor {
-        let mut editor = Editor::new();
+        Editor::new().opened(text)
+    }
+
+    /// The editor, with a text that is open.
+    fn opened(mut self, text: &str) -> Editor {
+        let editor = &mut self;
         editor.tell(
             "textDocument/didOpen",
             json!({ "textDocument": { "uri": URI, "languageId": "g7", "version": 1, "text": text } }),
         );
-        editor
+        self
     }
 
     fn send(&mut self, message: &Value) {
@@ -381,4 +394,19 @@ fn the_files_for_vim_start_the_server_in_neovim() {
     let said = String::from_utf8_lossy(&ran.stdout).replace('\r', "");
     let errors = String::from_utf8_lossy(&ran.stderr);
     assert_eq!(said, "g7 g7 g7\n1 problem\ntrue\n", "{errors}");
+}
+
+#[test]
+fn problems_are_told_in_the_language_of_the_editor() {
+    let broken = TEXT.replacen("when go", "when gone", 1);
+    assert_ne!(broken, TEXT);
+    for (locale, word) in [
+        (Some("fr"), "rien ne s’appelle"),
+        (Some("pt-PT"), "nada se chama"),
+        (Some("nl"), "nothing is called"),
+    ] {
+        let mut editor = Editor::speaking(locale).opened(&broken);
+        let told = editor.problems().to_string();
+        assert!(told.contains(word), "{locale:?}: {told}");
+    }
 }

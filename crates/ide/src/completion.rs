@@ -61,6 +61,9 @@ pub fn complete(file: &File, at: usize) -> Completion {
     items.sort_by_key(|c| !c.label.to_lowercase().starts_with(&prefix));
     items.dedup();
     items.truncate(200);
+    for item in &mut items {
+        item.detail = words::in_language(&item.detail, file.language).to_owned();
+    }
     Completion { from, items }
 }
 

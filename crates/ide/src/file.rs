@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use g7_edit::{Edit, History, Splice, spliced};
-use g7_model::{Document, FileId, Item, Problem, Severity, Span};
+use g7_model::{Document, FileId, Item, Language, Problem, Severity, Span};
 use g7_rig::Source;
 
 use crate::positions::Positions;
@@ -24,6 +24,8 @@ pub struct File {
     pub imported: bool,
     /// The changes that can be undone.
     pub history: History,
+    /// The language of the reader: of hover, completion and the titles of fixes.
+    pub language: Language,
 }
 
 /// Greatest length of a text that is opened, in bytes.
@@ -73,6 +75,7 @@ impl File {
             version: 0,
             imported,
             history: History::default(),
+            language: Language::default(),
             source,
         };
         file.judge();

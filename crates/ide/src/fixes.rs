@@ -38,7 +38,7 @@ fn carried(file: &File, p: &Problem) -> Vec<Fix> {
     let fix = |fix: &g7_model::Fix| {
         let mut splices: Vec<Splice> = fix.edits.iter().map(splice).collect();
         splices.sort_by_key(|s| (s.start, s.end));
-        Fix { title: fix.label.clone(), splices }
+        Fix { title: fix.label.in_language(file.language), splices }
     };
     p.fixes.iter().map(fix).collect()
 }
@@ -68,7 +68,7 @@ fn gestures(file: &File, p: &Problem) -> Vec<(String, Gesture)> {
     {
         return vec![("delete this transition".to_owned(), Gesture::Delete { ids: vec![id], heal: false })];
     }
-    if p.code == &codes::UNKNOWN_NAME && is_name(there) && p.what == format!("nothing is called `{there}`") {
+    if p.code == &codes::UNKNOWN_NAME && is_name(there) && *p.what == format!("nothing is called `{there}`") {
         let declared = |class: &str, what: &str| {
             let row = Row {
                 name: there.to_owned(),

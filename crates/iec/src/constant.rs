@@ -1,6 +1,6 @@
 //! Constants of the languages (numbers, durations and strings): how they are read and written.
 
-use g7_model::{Literal, Nanos, Type};
+use g7_model::{Literal, Nanos, Said, Type, say};
 use std::fmt::Write;
 
 /// The type before the `#` of a literal, in upper or lower case.
@@ -19,7 +19,7 @@ pub fn type_named(word: &str) -> Option<Type> {
 }
 
 /// `12`, `1_000`, `16#FF`.
-pub fn integer(text: &str) -> Result<i128, String> {
+pub fn integer(text: &str) -> Result<i128, Said> {
     let (base, digits) = match text.split_once('#') {
         Some((base, digits)) => (base, digits),
         None => ("10", text),
@@ -29,40 +29,40 @@ pub fn integer(text: &str) -> Result<i128, String> {
         "8" => 8,
         "10" => 10,
         "16" => 16,
-        _ => return Err(format!("`{base}` is no base of a number; there are 2#, 8#, 10# and 16#")),
+        _ => return Err(say!("`{base}` is no base of a number; there are 2#, 8#, 10# and 16#")),
     };
     let mut value: i128 = 0;
     let mut any = false;
     for c in digits.chars().filter(|c| *c != '_') {
-        let digit = c.to_digit(base).ok_or_else(|| format!("`{c}` is no digit of base {base}"))?;
+        let digit = c.to_digit(base).ok_or_else(|| say!("`{c}` is no digit of base {base}"))?;
         value = value * i128::from(base) + i128::from(digit);
         any = true;
         if value > i128::from(u64::MAX) {
-            return Err("the number does not fit into 64 bits".into());
+            return Err(say!("the number does not fit into 64 bits"));
         }
     }
-    if any { Ok(value) } else { Err("digits are missing".into()) }
+    if any { Ok(value) } else { Err(say!("digits are missing")) }
 }
 
 /// A real number without `_`, as the model keeps it.
-pub fn real(text: &str) -> Result<Box<str>, String> {
+pub fn real(text: &str) -> Result<Box<str>, Said> {
     let plain: String = text.chars().filter(|c| *c != '_').collect();
     match plain.parse::<f64>() {
         Ok(v) if v.is_finite() => Ok(plain.into()),
-        Ok(_) => Err("the number is larger than LREAL can hold".into()),
-        Err(_) => Err("this is no real number".into()),
+        Ok(_) => Err(say!("the number is larger than LREAL can hold")),
+        Err(_) => Err(say!("this is no real number")),
     }
 }
 
 /// `INT#5`, `REAL#2`, `BOOL#1`.
-pub fn typed(text: &str) -> Result<Literal, String> {
-    let (word, value) = text.split_once('#').ok_or("`#` is missing")?;
-    let ty = literal_type(word).ok_or("this type has no such literals")?;
+pub fn typed(text: &str) -> Result<Literal, Said> {
+    let (word, value) = text.split_once('#').ok_or(say!("`#` is missing"))?;
+    let ty = literal_type(word).ok_or(say!("this type has no such literals"))?;
     if ty == Type::Bool {
         return match value {
             "1" | "TRUE" | "true" => Ok(Literal::Bool(true)),
             "0" | "FALSE" | "false" => Ok(Literal::Bool(false)),
-            _ => Err("a BOOL is 0, 1, FALSE or TRUE".into()),
+            _ => Err(say!("a BOOL is 0, 1, FALSE or TRUE")),
         };
     }
     if ty.is_real() {
@@ -76,14 +76,14 @@ pub fn typed(text: &str) -> Result<Literal, String> {
     let value = if negative { -value } else { value };
     match ty.bounds() {
         Some((least, most)) if value < least || value > most => {
-            Err(format!("{value} is no {ty}: it holds {least} to {most}"))
+            Err(say!("{value} is no {ty}: it holds {least} to {most}"))
         }
         _ => Ok(Literal::Int(value, Some(ty))),
     }
 }
 
 /// `1h30m`, `2.5s`, `T#5s`.
-pub fn duration(text: &str) -> Result<Nanos, String> {
+pub fn duration(text: &str) -> Result<Nanos, Said> {
     let body = text.split_once('#').map_or(text, |(_, body)| body);
     let (negative, mut rest) = match body.strip_prefix('-') {
         Some(rest) => (true, rest),
@@ -93,7 +93,7 @@ pub fn duration(text: &str) -> Result<Nanos, String> {
     let mut unit_before = 0;
     let mut fraction_before = false;
     if rest.is_empty() {
-        return Err("the duration has no number".into());
+        return Err(say!("the duration has no number"));
     }
     while !rest.is_empty() {
         let (number, after) = split(rest, |c| c.is_ascii_digit() || c == '.' || c == '_');
@@ -101,27 +101,27 @@ pub fn duration(text: &str) -> Result<Nanos, String> {
         let place = Nanos::UNITS.iter().position(|(name, _)| unit.eq_ignore_ascii_case(name));
         let Some((place, (_, size))) = place.and_then(|p| Some((p, Nanos::UNITS.get(p)?))) else {
             return Err(match (number, unit) {
-                ("", _) => "the duration has no number before its unit".into(),
-                (_, "") => "the duration has no unit behind its last number".into(),
-                _ => format!("`{unit}` is no unit of time; there are d, h, m, s, ms, us and ns"),
+                ("", _) => say!("the duration has no number before its unit"),
+                (_, "") => say!("the duration has no unit behind its last number"),
+                _ => say!("`{unit}` is no unit of time; there are d, h, m, s, ms, us and ns"),
             });
         };
         if fraction_before {
-            return Err("only the last number of a duration can have a fraction".into());
+            return Err(say!("only the last number of a duration can have a fraction"));
         }
         if unit_before > place {
-            return Err("the units of a duration go from large to small".into());
+            return Err(say!("the units of a duration go from large to small"));
         }
         unit_before = place + 1;
         fraction_before = number.contains('.');
         total += amount(number, i128::from(size.count()))?;
         if total > i128::from(i64::MAX) {
-            return Err("the duration is too long: at most 106751 days".into());
+            return Err(say!("the duration is too long: at most 106751 days"));
         }
         rest = after.strip_prefix('_').unwrap_or(after);
     }
     let total = if negative { -total } else { total };
-    i64::try_from(total).map(Nanos::new).map_err(|_| "the duration is too long: at most 106751 days".into())
+    i64::try_from(total).map(Nanos::new).map_err(|_| say!("the duration is too long: at most 106751 days"))
 }
 
 fn split(text: &str, mut belongs: impl FnMut(char) -> bool) -> (&str, &str) {
@@ -129,13 +129,13 @@ fn split(text: &str, mut belongs: impl FnMut(char) -> bool) -> (&str, &str) {
 }
 
 /// A number, perhaps with a fraction, times a unit; the result is exact.
-fn amount(number: &str, unit: i128) -> Result<i128, String> {
+fn amount(number: &str, unit: i128) -> Result<i128, Said> {
     let (whole, fraction) = number.split_once('.').unwrap_or((number, ""));
-    let too_long = || "the duration is too long: at most 106751 days".to_string();
+    let too_long = || say!("the duration is too long: at most 106751 days");
     let mut value: i128 = 0;
     let mut any = false;
     for c in whole.chars().filter(|c| *c != '_') {
-        let digit = c.to_digit(10).ok_or("a duration has one point at most")?;
+        let digit = c.to_digit(10).ok_or(say!("a duration has one point at most"))?;
         value = value * 10 + i128::from(digit);
         any = true;
         if value > i128::from(i64::MAX) {
@@ -143,14 +143,14 @@ fn amount(number: &str, unit: i128) -> Result<i128, String> {
         }
     }
     if !any {
-        return Err("the duration has no number before its unit".into());
+        return Err(say!("the duration has no number before its unit"));
     }
     let mut total = value.checked_mul(unit).ok_or_else(too_long)?;
     let mut part = unit;
     for c in fraction.chars().filter(|c| *c != '_') {
-        let digit = i128::from(c.to_digit(10).ok_or("a duration has one point at most")?);
+        let digit = i128::from(c.to_digit(10).ok_or(say!("a duration has one point at most"))?);
         if part % 10 != 0 && digit != 0 {
-            return Err("the duration is finer than one nanosecond".into());
+            return Err(say!("the duration is finer than one nanosecond"));
         }
         part /= 10;
         total += digit * part;
@@ -161,7 +161,7 @@ fn amount(number: &str, unit: i128) -> Result<i128, String> {
 /// Removes the quotes and escapes of a string. The second value describes an escape that is not
 /// understood. `$C3$A4` is one letter: bytes above 127 that together are UTF-8 are read as it,
 /// others as the letters of Latin-1 with these numbers.
-pub fn unquote_st(text: &str) -> (String, Option<String>) {
+pub fn unquote_st(text: &str) -> (String, Option<Said>) {
     let inner = text.strip_prefix('\'').unwrap_or(text);
     let inner = inner.strip_suffix('\'').unwrap_or(inner);
     let mut out = String::with_capacity(inner.len());
@@ -192,8 +192,8 @@ pub fn unquote_st(text: &str) -> (String, Option<String>) {
             Some('r' | 'R') => out.push('\r'),
             Some('t' | 'T') => out.push('\t'),
             Some('p' | 'P') => out.push('\u{c}'),
-            Some(other) => wrong = Some(format!("`${other}` is no escape; a dollar sign is written `$$`")),
-            None => wrong = Some("a `$` stands before the end of the text; write `$$`".into()),
+            Some(other) => wrong = Some(say!("`${other}` is no escape; a dollar sign is written `$$`")),
+            None => wrong = Some(say!("a `$` stands before the end of the text; write `$$`")),
         }
     }
     letters(&mut high, &mut out);

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Note, Problem, Severity, Span};
+use g7_model::{FileId, Note, Problem, Said, Severity, Span, say};
 
 /// The most warnings, and the most errors, that are listed; further ones are only counted.
 const MOST: usize = 500;
@@ -47,7 +47,7 @@ impl Report {
     }
 
     /// Reports a problem at a range of bytes of the file.
-    pub fn say(&mut self, code: &'static Code, at: &Range<usize>, what: impl Into<String>) {
+    pub fn say(&mut self, code: &'static Code, at: &Range<usize>, what: Said) {
         self.put(Problem::new(code, self.span(at), what));
     }
 
@@ -64,7 +64,7 @@ impl Report {
     }
 
     /// Reports an element without counterpart. All elements of one name form one problem.
-    pub fn element(&mut self, code: &'static Code, tag: &str, at: &Range<usize>, what: &str) {
+    pub fn element(&mut self, code: &'static Code, tag: &str, at: &Range<usize>, what: Said) {
         let span = self.span(at);
         let key = (code.id, tag.to_string());
         if let Some((index, count)) = self.groups.get_mut(&key) {
@@ -72,7 +72,7 @@ impl Report {
             if let Some(problem) = self.problems.get_mut(*index)
                 && problem.related.len() < MOST_PLACES
             {
-                problem.related.push((span, format!("another `{tag}`")));
+                problem.related.push((span, say!("another `{tag}`")));
             }
             return;
         }
@@ -109,12 +109,12 @@ impl Report {
         counts.sort_unstable();
         for (index, count) in counts {
             if let Some(problem) = self.problems.get_mut(index) {
-                problem.what.push_str(&format!(" ({count} of them)"));
+                problem.what = say!("{} ({count} of them)", problem.what);
             }
         }
         if self.left_out > 0 {
             let at = Span { file: self.file, start: 0, end: 0 };
-            let what = format!("{} more problems are not listed", self.left_out);
+            let what = say!("{} more problems are not listed", self.left_out);
             self.problems.push(Problem::new(&codes::TOO_MANY_PROBLEMS, at, what));
         }
         self.problems.sort_by_key(|p| (p.at.start, p.at.end));

@@ -5,7 +5,7 @@
 //! tests, `G06xx` imported files, `G07xx` io files. Each has a page `docs/book/src/problems/<id>.md`,
 //! one in `docs/book/fr` and `docs/book/pt`, and a case in `tests/check`; tests hold us to all.
 
-use crate::Severity;
+use crate::{Language, Said, Severity};
 
 /// A problem code.
 #[derive(Debug, PartialEq, Eq)]
@@ -18,6 +18,13 @@ pub struct Code {
     pub title: &'static str,
     /// The rule behind it.
     pub source: &'static str,
+}
+
+impl Code {
+    /// Its title in a language.
+    pub fn title_in(&self, language: Language) -> String {
+        Said::plain(self.title, self.title).in_language(language)
+    }
 }
 
 macro_rules! codes {

@@ -3,7 +3,7 @@
 //! A problem carries its fixes ([`crate::Problem::fixes`]). `g7 check --fix`, the page and a language
 //! server apply the same values; none of them knows how a problem is solved.
 
-use crate::{FileId, Span};
+use crate::{FileId, Said, Span};
 
 /// New text in the place of a span; an empty span is a place where text is put in.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -18,7 +18,7 @@ pub struct TextEdit {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fix {
     /// Its effect, as an order: ``write `step` ``. Lower case, no full stop, names in back-ticks.
-    pub label: String,
+    pub label: Said,
     /// The edits; they do not overlap, and none is in another file than the problem.
     pub edits: Vec<TextEdit>,
     /// True if the author can have meant nothing else, or if the meaning stays the same: then a tool may
@@ -28,12 +28,12 @@ pub struct Fix {
 
 impl Fix {
     /// A fix that needs somebody to choose it, with one edit.
-    pub fn likely(label: impl Into<String>, at: Span, text: impl Into<String>) -> Fix {
-        Fix { label: label.into(), edits: vec![TextEdit { at, text: text.into() }], sure: false }
+    pub fn likely(label: Said, at: Span, text: impl Into<String>) -> Fix {
+        Fix { label, edits: vec![TextEdit { at, text: text.into() }], sure: false }
     }
 
     /// A fix that may be applied unasked, with one edit.
-    pub fn sure(label: impl Into<String>, at: Span, text: impl Into<String>) -> Fix {
+    pub fn sure(label: Said, at: Span, text: impl Into<String>) -> Fix {
         Fix { sure: true, ..Fix::likely(label, at, text) }
     }
 
@@ -81,6 +81,7 @@ impl Fix {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::say;
 
     const FILE: FileId = FileId(3);
 
@@ -90,27 +91,28 @@ mod tests {
 
     #[test]
     fn fixes_are_applied_whole_or_left_out() {
-        let one = Fix::sure("write `b`", span(0, 1), "b").and(span(4, 5), "c");
-        let clash = Fix::sure("write `x`", span(2, 3), "x").and(span(4, 5), "y");
-        let same = Fix::sure("write `b`", span(0, 1), "b");
-        let beside = Fix::likely("delete it", span(6, 7), "");
+        let one = Fix::sure(say!("write `b`"), span(0, 1), "b").and(span(4, 5), "c");
+        let clash = Fix::sure(say!("write `x`"), span(2, 3), "x").and(span(4, 5), "y");
+        let same = Fix::sure(say!("write `b`"), span(0, 1), "b");
+        let beside = Fix::likely(say!("delete it"), span(6, 7), "");
         let (text, applied) = Fix::apply("a-e-i-o", FILE, &[&one, &clash, &same, &beside]);
         assert_eq!((text.as_str(), applied), ("b-e-c-", vec![true, false, true, true]));
     }
 
     #[test]
     fn what_does_not_fit_the_text_changes_nothing() {
-        let within = Fix::sure("", span(1, 2), "x");
-        let behind = Fix::sure("", span(2, 9), "x");
-        let other = Fix::sure("", Span { file: FileId(0), start: 0, end: 2 }, "x");
-        let none = Fix { label: String::new(), edits: Vec::new(), sure: true };
+        let within = Fix::sure(Said::default(), span(1, 2), "x");
+        let behind = Fix::sure(Said::default(), span(2, 9), "x");
+        let other = Fix::sure(Said::default(), Span { file: FileId(0), start: 0, end: 2 }, "x");
+        let none = Fix { label: Said::default(), edits: Vec::new(), sure: true };
         let (text, applied) = Fix::apply("é", FILE, &[&within, &behind, &other, &none]);
         assert_eq!((text.as_str(), applied), ("é", vec![false; 4]));
     }
 
     #[test]
     fn text_is_put_in_at_the_ends() {
-        let (first, last) = (Fix::sure("", span(0, 0), "<"), Fix::sure("", span(2, 2), ">"));
+        let (first, last) =
+            (Fix::sure(Said::default(), span(0, 0), "<"), Fix::sure(Said::default(), span(2, 2), ">"));
         assert_eq!(Fix::apply("ab", FILE, &[&last, &first]).0, "<ab>");
     }
 }

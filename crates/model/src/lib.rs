@@ -15,8 +15,12 @@
 //!
 //! - Two documents that differ only in spans and notes are equal: `Place` never
 //!   takes part in a comparison, so `parse(print(d)) == d` can be tested as is.
+//! - A text for a reader is a [`Said`], with a row in each language.
 //! - A [`Problem`]'s code is one of [`codes::ALL`], each with a page in the book.
 #![forbid(unsafe_code)]
+
+// `say!` names this crate, also within it.
+extern crate self as g7_model;
 
 mod action;
 mod chart;
@@ -24,6 +28,7 @@ pub mod codes;
 mod expr;
 mod fix;
 mod functions;
+mod language;
 mod name;
 mod nanos;
 mod operators;
@@ -31,6 +36,7 @@ pub mod places;
 mod plant;
 mod problem;
 mod qualifier;
+pub mod said;
 mod scenario;
 mod severity;
 mod span;
@@ -49,12 +55,15 @@ pub use chart::{
 pub use expr::{Arg, Expr, ExprKind, Literal, Path};
 pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
+pub use g7_say::say;
+pub use language::Language;
 pub use name::{Name, Param};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};
 pub use problem::Problem;
 pub use qualifier::{Lasting, Qualifier};
+pub use said::{Part, Said};
 pub use scenario::{Property, PropertyKind, Scenario, TestStmt, TestStmtKind};
 pub use severity::Severity;
 pub use span::{FileId, Place, Span};

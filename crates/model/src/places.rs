@@ -7,9 +7,9 @@ use crate::{
     Action, ActionKind, Arg, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart, ChartItem,
     ChartKind, Document, Drive, Expr, ExprKind, Fix, Function, Item, Layout, Literal, Local, Name,
     NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt, Placed, Plant, PlantItem, Profile,
-    ProfileName, Property, PropertyKind, Qualifier, Rate, Scenario, Section, Situation, Span, StateVar, Step,
-    StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition, Type,
-    UnaryOp, VarDecl, VarKind, View, Work,
+    ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario, Section, Situation, Span, StateVar,
+    Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition,
+    Type, UnaryOp, VarDecl, VarKind, View, Work,
 };
 
 /// A part of a document that has places in a text.
@@ -101,7 +101,7 @@ macro_rules! enums {
 }
 
 placeless! {
-    bool, i32, i128, u32, u64, Box<str>, String, BinaryOp, BodyLang, ChartKind, Nanos, ProfileName, Qualifier,
+    bool, i32, i128, u32, u64, Box<str>, String, Said, BinaryOp, BodyLang, ChartKind, Nanos, ProfileName, Qualifier,
     Switch, TargetPlc, Type, UnaryOp, VarKind,
 }
 

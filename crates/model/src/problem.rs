@@ -4,7 +4,7 @@
 //! value. Wrong input is never an `Err`: a check returns the parts of the chart that it could use
 //! *and* the problems, so the rest stays usable.
 
-use crate::{Fix, Severity, Span, codes::Code};
+use crate::{Fix, Said, Severity, Span, codes::Code, say};
 
 /// A mistake in a chart that its author can correct.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -14,32 +14,32 @@ pub struct Problem {
     /// The place to underline.
     pub at: Span,
     /// The facts: lower case, no full stop, names in back-ticks.
-    pub what: String,
+    pub what: Said,
     /// Other places, each with a description of what stands *there* (not with advice).
-    pub related: Vec<(Span, String)>,
+    pub related: Vec<(Span, Said)>,
     /// A remedy, if there is one that is very likely right.
-    pub help: Option<String>,
+    pub help: Option<Said>,
     /// Changes of the text that solve it, the likeliest first; may be empty.
     pub fixes: Vec<Fix>,
 }
 
 impl Problem {
     /// A problem with only a place and a message.
-    pub fn new(code: &'static Code, at: Span, what: impl Into<String>) -> Problem {
-        Problem { code, at, what: what.into(), related: Vec::new(), help: None, fixes: Vec::new() }
+    pub fn new(code: &'static Code, at: Span, what: Said) -> Problem {
+        Problem { code, at, what, related: Vec::new(), help: None, fixes: Vec::new() }
     }
 
     /// Adds another place.
     #[must_use]
-    pub fn related(mut self, at: Span, there: impl Into<String>) -> Problem {
-        self.related.push((at, there.into()));
+    pub fn related(mut self, at: Span, there: Said) -> Problem {
+        self.related.push((at, there));
         self
     }
 
     /// Adds a remedy.
     #[must_use]
-    pub fn help(mut self, help: impl Into<String>) -> Problem {
-        self.help = Some(help.into());
+    pub fn help(mut self, help: Said) -> Problem {
+        self.help = Some(help);
         self
     }
 
@@ -56,8 +56,8 @@ impl Problem {
     pub fn meant(self, near: &str) -> Problem {
         let plain = near.chars().all(|c| c.is_alphanumeric() || c == '_');
         let at = self.at;
-        let problem = self.help(format!("did you mean `{near}`?"));
-        if plain { problem.fix(Fix::likely(format!("write `{near}`"), at, near)) } else { problem }
+        let problem = self.help(say!("did you mean `{near}`?"));
+        if plain { problem.fix(Fix::likely(say!("write `{near}`"), at, near)) } else { problem }
     }
 
     /// Tells whether the chart can still be compiled.

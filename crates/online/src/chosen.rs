@@ -59,7 +59,7 @@ pub(crate) fn choose(bench: &Bench, history: &History, problems: &mut Vec<Proble
                         problems.push(Problem::new(
                             &codes::WIRED_TWICE,
                             name.at,
-                            format!("`{}` is named twice", signal.name),
+                            g7_model::Said::foreign(format!("`{}` is named twice", signal.name)),
                         ))
                     }
                     Ok(signal) => signals.push(signal),
@@ -70,8 +70,10 @@ pub(crate) fn choose(bench: &Bench, history: &History, problems: &mut Vec<Proble
     }
     if signals.len() > SIGNALS {
         let what = format!("{} signals are too many: {SIGNALS} can be recorded", signals.len());
-        let mut problem = Problem::new(&codes::BAD_WIRING, history.file.at, what);
-        problem.help = Some("name those that matter: `signals = [\"start\", \"X3\"]`".to_owned());
+        let mut problem = Problem::new(&codes::BAD_WIRING, history.file.at, g7_model::Said::foreign(what));
+        problem.help = Some(g7_model::Said::foreign(
+            "name those that matter: `signals = [\"start\", \"X3\"]`".to_owned(),
+        ));
         problems.push(problem);
         signals.truncate(SIGNALS);
     }
@@ -89,7 +91,7 @@ fn of_name(bench: &Bench, name: &At<String>) -> Result<Recorded, Box<Problem>> {
         Named::Step(step) => Ok(of_step(step)),
         Named::Item(item) if item.kind == Kind::Text => {
             let what = format!("`{}` is a STRING, which cannot be recorded", item.name);
-            Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, what)))
+            Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, g7_model::Said::foreign(what))))
         }
         Named::Item(item) => Ok(of_item(bench, item)),
     }
@@ -138,7 +140,9 @@ fn set_band(
         Named::Item(item) => item.name.clone(),
         Named::Step(step) => step.activity(),
     };
-    let wrong = |what: String| Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, what)));
+    let wrong = |what: String| {
+        Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, g7_model::Said::foreign(what))))
+    };
     match signals.iter_mut().find(|s| s.name == known) {
         None => wrong(format!("`{known}` has a deadband and is not recorded")),
         Some(signal) if signal.kind == Kind::Bool => {

@@ -120,10 +120,11 @@ pub fn lacking(setup: &Setup) -> Vec<Problem> {
         let word = device.kind.word();
         let feature = lacks(word)?;
         let what = format!("this build of G7 has no devices of the kind \"{word}\"");
-        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, what);
+        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, g7_model::Said::foreign(what));
         let linux = if word == "gpio" { ", for Linux" } else { "" };
-        problem.help =
-            Some(format!("build it with `cargo install --path crates/g7 --features {feature}`{linux}"));
+        problem.help = Some(g7_model::Said::foreign(format!(
+            "build it with `cargo install --path crates/g7 --features {feature}`{linux}"
+        )));
         Some(problem)
     };
     setup.devices.iter().filter_map(wrong).collect()

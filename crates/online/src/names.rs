@@ -18,14 +18,15 @@ pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>
     if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
         return Ok(Named::Step(step));
     }
-    let wrong = |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
+    let wrong =
+        |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, g7_model::Said::foreign(what)));
     match bench.item(name) {
         Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
         Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
         None => {
             let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
             let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
-            problem.help = Some(near).filter(|near| !near.is_empty());
+            problem.help = (Some(near).filter(|near| !near.is_empty())).map(g7_model::Said::foreign);
             Err(problem)
         }
     }

@@ -76,7 +76,7 @@ struct Wirer<'a> {
 
 impl<'a> Wirer<'a> {
     fn wrong(&mut self, code: &'static codes::Code, at: Span, what: impl Into<String>) -> &mut Problem {
-        self.problems.push(Problem::new(code, at, what));
+        self.problems.push(Problem::new(code, at, g7_model::Said::foreign(what)));
         let last = self.problems.len() - 1;
         &mut self.problems[last]
     }
@@ -90,7 +90,7 @@ impl<'a> Wirer<'a> {
             let near = near.trim_start_matches("; ").to_owned();
             let problem =
                 self.wrong(&codes::UNKNOWN_CHANNEL, *at, format!("the chart has no {class} `{name}`"));
-            problem.help = Some(near).filter(|near| !near.is_empty());
+            problem.help = (Some(near).filter(|near| !near.is_empty())).map(g7_model::Said::foreign);
             return None;
         };
         if matches!(item.role, Role::Input(_)) != input || !matches!(item.role, Role::Input(_) | Role::Output)
@@ -101,7 +101,7 @@ impl<'a> Wirer<'a> {
         if let Some(before) = wired.insert(item.addr, *at) {
             self.wrong(&codes::WIRED_TWICE, *at, format!("`{}` is wired twice", item.name))
                 .related
-                .push((before, "it is wired here as well".to_owned()));
+                .push((before, g7_model::Said::foreign("it is wired here as well".to_owned())));
             return None;
         }
         Some(item)
@@ -155,7 +155,7 @@ impl<'a> Wirer<'a> {
                 format!("there are {}", names.join(", "))
             };
             let what = format!("there is no device `{}`", channel.device.value);
-            self.wrong(&codes::UNKNOWN_CHANNEL, channel.at, what).help = Some(help);
+            self.wrong(&codes::UNKNOWN_CHANNEL, channel.at, what).help = Some(g7_model::Said::foreign(help));
             return;
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
@@ -188,7 +188,8 @@ impl<'a> Wirer<'a> {
                     Point::Node(_) => "only OPC UA has nodes: `kind = \"opc-ua\"`",
                     _ => "only a broker has messages: `kind = \"mqtt\"`",
                 };
-                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
+                    Some(g7_model::Said::foreign(help.to_owned()));
             }
         }
     }
@@ -213,7 +214,8 @@ impl<'a> Wirer<'a> {
         if class == Class::Shown {
             let (what, help) = NOT_SHOWN;
             let what = format!("`{}` {what}", channel.point);
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
+                Some(g7_model::Said::foreign(help.to_owned()));
             return;
         }
         self.place(channel, subject, device, class, read(channel, &subject.carried(class)));
@@ -231,7 +233,7 @@ impl<'a> Wirer<'a> {
         let (wire, scaling) = match read {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
-                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = (help).map(g7_model::Said::foreign);
                 return;
             }
         };
@@ -264,12 +266,14 @@ impl<'a> Wirer<'a> {
             );
             let help =
                 format!("give the panel a longer `press`: `press = \"{}\"`", self.bench.period.plain());
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(g7_model::Said::foreign(help));
             return;
         }
         match handles::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
             Ok(wired) => self.connect(channel, subject, device, wired, class),
-            Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
+            Err(Refused { at, what, help }) => {
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = (help).map(g7_model::Said::foreign)
+            }
         }
     }
 
@@ -284,7 +288,7 @@ impl<'a> Wirer<'a> {
         let (wire, scaling) = match messages::wire(channel, &subject.carried(class), broker) {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
-                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = (help).map(g7_model::Said::foreign);
                 return;
             }
         };
@@ -322,7 +326,7 @@ impl<'a> Wirer<'a> {
             };
             self.wrong(&codes::WIRED_TWICE, channel.at, what)
                 .related
-                .push((there, format!("`{other}` is wired here")));
+                .push((there, g7_model::Said::foreign(format!("`{other}` is wired here"))));
             return false;
         }
         self.messages.insert(key, (item.name.clone(), channel.at));
@@ -340,7 +344,7 @@ impl<'a> Wirer<'a> {
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
         if let Some((what, help)) = refused(register.area, class, server) {
             self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` {what}")).help =
-                Some(help.to_owned());
+                Some(g7_model::Said::foreign(help.to_owned()));
             return;
         }
         let Some((encoding, scaling)) = self.scaling(channel, subject, register) else { return };
@@ -396,7 +400,8 @@ impl<'a> Wirer<'a> {
                 Kind::Text => "a STRING cannot be wired",
                 _ => "a number is in registers: `input(…)` or `holding(…)`",
             };
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help.to_owned());
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
+                Some(g7_model::Said::foreign(help.to_owned()));
             return None;
         }
         let inverted = item.inverted;
@@ -448,7 +453,7 @@ impl<'a> Wirer<'a> {
             let what = format!("`{}` and `{other}` are wired to one point, {register}", item.name);
             self.wrong(&codes::WIRED_TWICE, channel.at, what)
                 .related
-                .push((there, format!("`{other}` is wired here")));
+                .push((there, g7_model::Said::foreign(format!("`{other}` is wired here"))));
             return false;
         }
         for place in places {

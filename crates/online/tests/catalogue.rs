@@ -5,7 +5,7 @@ use g7_online::setup::catalogue::{Argument, CONTROLLER, Form, KINDS, KindRow, Po
 use g7_online::setup::{Kind, Setup, read, read_point};
 
 fn problems(text: &str) -> Vec<String> {
-    read(text, FileId(0)).1.into_iter().map(|Problem { what, .. }| what).collect()
+    read(text, FileId(0)).1.into_iter().map(|Problem { what, .. }| what.to_string()).collect()
 }
 
 /// A value as the file writes it.

@@ -15,6 +15,7 @@ use crate::run::{self, Run};
 use crate::{drawing, edit, export, testing};
 use g7_ide::File;
 use g7_ide::gestures;
+use g7_model::Language;
 
 /// A page: its open files and its runs.
 #[derive(Default)]
@@ -24,6 +25,7 @@ pub struct Page {
     /// The answers found so far, by file.
     proofs: BTreeMap<String, Proof>,
     shown: Shown,
+    language: Language,
 }
 
 /// Greatest number of open files, and of runs.
@@ -51,6 +53,13 @@ impl Page {
                 self.files.remove(&file);
                 self.proofs.remove(&file);
                 self.shown.forget(&file);
+                ok(&())
+            }
+            Request::Speak { language } => {
+                self.language = Language::of(&language).unwrap_or_default();
+                for file in self.files.values_mut() {
+                    file.language = self.language;
+                }
                 ok(&())
             }
             Request::Look { file } => self.look(&file),
@@ -156,7 +165,8 @@ impl Page {
         if self.files.len() >= MOST && !self.files.contains_key(&name) {
             return Err("too many files are open: close one".to_owned());
         }
-        let file = File::open(&name, text)?;
+        let mut file = File::open(&name, text)?;
+        file.language = self.language;
         let name = if file.imported { with_ending(&name) } else { name };
         self.files.insert(name.clone(), file);
         self.look(&name)

@@ -11,7 +11,7 @@ use crate::places::{Change, outward};
 #[derive(Debug, Serialize)]
 pub(crate) struct Row {
     code: &'static str,
-    title: &'static str,
+    title: String,
     severity: &'static str,
     what: String,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -59,15 +59,15 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
     let (line, column) = file.positions.line_column(file.text(), byte);
     let related = p.related.iter().map(|(at, what)| {
         let (from, to) = file.units(*at);
-        Related { from, to, what: what.clone() }
+        Related { from, to, what: what.in_language(file.language) }
     });
     let fixes = g7_ide::fixes::fixes(file, p, time);
     Row {
         code: p.code.id,
-        title: p.code.title,
+        title: p.code.title_in(file.language),
         severity: p.severity().name(),
-        what: p.what.clone(),
-        help: p.help.clone(),
+        what: p.what.in_language(file.language),
+        help: p.help.as_ref().map(|h| h.in_language(file.language)),
         from,
         to,
         line,

@@ -13,6 +13,10 @@ pub(crate) enum Request {
     Close {
         file: String,
     },
+    /// Chooses the language of the answers: `en`, `fr`, `pt`.
+    Speak {
+        language: String,
+    },
     Look {
         file: String,
     },

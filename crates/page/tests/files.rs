@@ -388,3 +388,22 @@ fn the_code_of_a_step_is_marked() {
         assert!(marked.len() < lines.len() / 4, "{word}: not everything belongs to one step");
     }
 }
+
+#[test]
+fn a_page_speaks_the_language_of_its_reader() {
+    let mut page = Asked::default();
+    page.ok(json!({ "do": "speak", "language": "fr" }));
+    let look = page.open("input a : BOOL\nchart G {\n  initial step 1\n  1 -> 1 when b and a\n}\n");
+    let said = |look: &serde_json::Value| look["problems"][0]["what"].as_str().unwrap_or_default().to_owned();
+    assert_eq!(said(&look), "rien ne s’appelle `b`");
+    assert_eq!(look["problems"][0]["title"], "un nom que rien ne porte");
+    let hover = page.ok(json!({ "do": "hover", "file": "a.g7", "at": 0 }));
+    let markdown = hover["markdown"].as_str().unwrap_or_default();
+    assert!(markdown.contains("une valeur qui vient du procédé"), "{markdown}");
+    let words = page.ok(json!({ "do": "complete", "file": "a.g7", "at": 3 }));
+    assert!(words.to_string().contains("une valeur qui vient du procédé"), "{words}");
+    page.ok(json!({ "do": "speak", "language": "pt-BR" }));
+    assert_eq!(said(&page.ok(json!({ "do": "look", "file": "a.g7" }))), "nada se chama `b`");
+    page.ok(json!({ "do": "speak", "language": "nl" }));
+    assert_eq!(said(&page.ok(json!({ "do": "look", "file": "a.g7" }))), "nothing is called `b`");
+}

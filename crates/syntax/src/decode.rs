@@ -1,7 +1,7 @@
 //! Bytes of a file to text.
 
 use crate::problems::Problems;
-use g7_model::{FileId, Problem, Span, codes};
+use g7_model::{FileId, Problem, Said, Span, codes, say};
 use std::borrow::Cow;
 
 /// Replaces each byte that is not UTF-8, so that all offsets stay those of the file.
@@ -38,19 +38,19 @@ pub fn decode(bytes: &[u8], file: FileId) -> (Cow<'_, str>, Vec<Problem>) {
 /// The problem of a file that is too large to read.
 pub(crate) fn too_large(len: usize, file: FileId) -> Option<Problem> {
     (len > MOST_BYTES).then(|| {
-        let what = format!("the file has {len} bytes; at most {MOST_BYTES} are read");
+        let what = say!("the file has {len} bytes; at most {MOST_BYTES} are read");
         Problem::new(&codes::TOO_LARGE, span(file, 0, 0), what)
     })
 }
 
 fn broken(at: Span, bytes: &[u8], utf16: bool) -> Problem {
     if utf16 {
-        let help = "save the file as UTF-8";
-        return Problem::new(&codes::BAD_ENCODING, at, "the file is UTF-16 text").help(help);
+        let help = say!("save the file as UTF-8");
+        return Problem::new(&codes::BAD_ENCODING, at, say!("the file is UTF-16 text")).help(help);
     }
     let hex: Vec<String> = bytes.iter().map(|b| format!("{b:02X}")).collect();
-    let what = format!("byte {} is not UTF-8", hex.join(" "));
-    Problem::new(&codes::BAD_ENCODING, at, what).help("save the file as UTF-8")
+    let what = say!("byte {} is not UTF-8", Said::foreign(hex.join(" ")));
+    Problem::new(&codes::BAD_ENCODING, at, what).help(say!("save the file as UTF-8"))
 }
 
 fn span(file: FileId, start: usize, end: usize) -> Span {

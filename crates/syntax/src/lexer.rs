@@ -7,7 +7,7 @@
 use crate::foreign;
 use crate::problems::Problems;
 use g7_iec::constant;
-use g7_model::{FileId, Fix, Note, Problem, Span, codes};
+use g7_model::{FileId, Fix, Note, Problem, Said, Span, codes, say};
 use std::{cell::Cell, rc::Rc};
 
 /// Kinds of token.
@@ -226,9 +226,9 @@ impl<'a> Lexer<'a> {
         self.line_note();
         let at = Span { end: offset(start + sign.len()), ..self.span(start) };
         self.problems.add(at, || {
-            let what = format!("a note to the reader does not begin with `{sign}`");
-            Problem::new(&codes::BAD_CHARACTER, at, what).help("write `//`").fix(Fix::sure(
-                "write `//`",
+            let what = say!("a note to the reader does not begin with `{sign}`");
+            Problem::new(&codes::BAD_CHARACTER, at, what).help(say!("write `//`")).fix(Fix::sure(
+                say!("write `//`"),
                 at,
                 "//",
             ))
@@ -269,7 +269,7 @@ impl<'a> Lexer<'a> {
                 let at = Span { end: offset(start + 2), ..self.span(start) };
                 let close = if close == b"*/" { "*/" } else { "*)" };
                 self.problems.add(at, || {
-                    let what = format!("this note is never closed with `{close}`");
+                    let what = say!("this note is never closed with `{close}`");
                     Problem::new(&codes::UNCLOSED, at, what)
                 });
                 break;
@@ -330,9 +330,9 @@ impl<'a> Lexer<'a> {
             b'%' => self.take(1, Tok::Percent),
             b'?' if foreign::choice(self.rest()) => self.take(1, Tok::Question),
             b'\'' if glued && self.after_operand() => self.take(1, Tok::Prime),
-            b'\'' => self.quoted('\'', '$', Tok::Str, "text"),
-            b'"' => self.quoted('"', '\\', Tok::Comment, "comment"),
-            b'`' => self.quoted('`', '\\', Tok::Ticked, "name"),
+            b'\'' => self.quoted('\'', '$', Tok::Str, say!("text")),
+            b'"' => self.quoted('"', '\\', Tok::Comment, say!("comment")),
+            b'`' => self.quoted('`', '\\', Tok::Ticked, say!("name")),
             _ => self.other(),
         }
     }
@@ -462,7 +462,7 @@ impl<'a> Lexer<'a> {
     }
 
     /// A quoted text; it ends at the end of the line at the latest.
-    fn quoted(&mut self, quote: char, escape: char, kind: Tok, what: &'static str) -> Tok {
+    fn quoted(&mut self, quote: char, escape: char, kind: Tok, what: Said) -> Tok {
         let start = self.pos;
         self.pos += 1;
         let mut escaped = false;
@@ -482,7 +482,7 @@ impl<'a> Lexer<'a> {
         self.unclosed(start, quote, kind, what)
     }
 
-    fn unclosed(&mut self, start: usize, quote: char, kind: Tok, what: &'static str) -> Tok {
+    fn unclosed(&mut self, start: usize, quote: char, kind: Tok, what: Said) -> Tok {
         // The brackets behind the text were hardly meant to belong to it.
         let inner = self.text.get(start + 1..self.pos).unwrap_or_default();
         let length = match kind {
@@ -493,11 +493,11 @@ impl<'a> Lexer<'a> {
             _ => inner.find('{').unwrap_or(inner.len()),
         };
         self.pos = start + 1 + inner.get(..length).unwrap_or_default().trim_end().len();
-        let shown = if quote == '`' { "`` ` ``".into() } else { format!("`{quote}`") };
+        let shown = Said::foreign(if quote == '`' { "`` ` ``".into() } else { format!("`{quote}`") });
         self.report(start, |at| {
-            let help = format!("write {shown} at its end");
+            let help = say!("write {shown} at its end");
             let end = Span { start: at.end, ..at };
-            Problem::new(&codes::UNCLOSED, at, format!("this {what} is not closed with {shown} on its line"))
+            Problem::new(&codes::UNCLOSED, at, say!("this {what} is not closed with {shown} on its line"))
                 .help(help.clone())
                 .fix(Fix::likely(help, end, quote))
         });
@@ -547,8 +547,8 @@ impl<'a> Lexer<'a> {
         let length = end.map_or(line, |(i, _)| i);
         let inner = rest.get(..length).unwrap_or_default();
         self.problems.add(at, || {
-            let help = format!("write the straight mark `{straight}` on both sides");
-            Problem::new(&codes::BAD_CHARACTER, at, format!("`{open}` is no quotation mark here"))
+            let help = say!("write the straight mark `{straight}` on both sides");
+            Problem::new(&codes::BAD_CHARACTER, at, say!("`{open}` is no quotation mark here"))
                 .help(help.clone())
                 .fix(Fix::sure(help, whole, format!("{straight}{inner}{straight}")))
         });
@@ -571,8 +571,8 @@ impl<'a> Lexer<'a> {
         }
         self.report(start, |at| {
             let shown: String = run.chars().take(8).flat_map(char::escape_debug).collect();
-            let problem = Problem::new(&codes::BAD_CHARACTER, at, format!("`{shown}` has no meaning here"));
-            if run == "~" { problem.help("the complement is written `not a`") } else { problem }
+            let problem = Problem::new(&codes::BAD_CHARACTER, at, say!("`{shown}` has no meaning here"));
+            if run == "~" { problem.help(say!("the complement is written `not a`")) } else { problem }
         });
     }
 }

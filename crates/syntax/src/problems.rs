@@ -1,6 +1,6 @@
 //! The problems of one run, up to a limit.
 
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Span, codes, say};
 
 /// More problems than this help nobody.
 const MOST: usize = 100;
@@ -52,8 +52,8 @@ impl Problems {
     pub(crate) fn finish(mut self) -> Vec<Problem> {
         self.list.sort_by_key(|p| p.at.start);
         if let Some(at) = self.overflow {
-            let what = format!("more than {MOST} problems; the rest of them is not listed");
-            let help = "mend the first ones and look again: they often cause those that follow";
+            let what = say!("more than {MOST} problems; the rest of them is not listed");
+            let help = say!("mend the first ones and look again: they often cause those that follow");
             self.list.push(Problem::new(&codes::TOO_MANY_PROBLEMS, at, what).help(help));
         }
         self.list

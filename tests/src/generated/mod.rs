@@ -275,7 +275,7 @@ impl Subject {
     ) -> Result<Printed, String> {
         let options = Options { language, style, room: self.room, name, source: &self.text };
         g7_codegen::print_as(&self.compiled, &options, parts)
-            .map_err(|p| p.iter().map(|p| p.what.clone()).collect::<Vec<_>>().join("; "))
+            .map_err(|p| p.iter().map(|p| p.what.to_string()).collect::<Vec<_>>().join("; "))
     }
 
     fn word_name(&self, fault: u64, at: usize) -> String {

@@ -157,7 +157,7 @@ pub fn prints(subjects: &[Subject], form: Form) -> Result<Prints<'_>, String> {
                 if first.at.end <= first.at.start || first.at.end as usize > s.text.len() {
                     return Err(format!("{}: no place: {}", s.title, first.what));
                 }
-                *all.refused.entry(first.what.clone()).or_default() += 1;
+                *all.refused.entry(first.what.to_string()).or_default() += 1;
             }
         }
     }

@@ -94,6 +94,13 @@ export class OpenFile {
     }
   }
 
+  /** Asks for the problems again, in the language that was chosen meanwhile. */
+  again(): Promise<void> {
+    return this.#turn(async () => {
+      this.look = await page.call<Look>({ do: 'look', file: this.name });
+    });
+  }
+
   /** Executes a gesture. */
   edit(gesture: Gesture): Promise<Edited> {
     return this.#turn(() => this.#change({ do: 'edit', file: this.name, gesture }, 'structure'));

@@ -1,5 +1,8 @@
 // The Rust crate `g7-page` as wasm in a worker: one JSON message in, one out, in the order of the
 // requests. The worker keeps parsing, layout and runs off the painting thread.
+import { untrack } from 'svelte';
+
+import { prefs } from './prefs.svelte';
 
 export type Message = { do: string } & Record<string, unknown>;
 
@@ -27,13 +30,24 @@ export function opened<T>(answer: string): T {
 export class Local implements Answers {
   #worker: Worker | undefined;
   #waiting: Waiting[] = [];
+  /** The language that the worker was told. */
+  #language = 'en';
 
   call<T>(message: Message): Promise<T> {
     this.#worker ??= this.#start();
+    const language = untrack(() => prefs.language);
+    if (this.#language !== language) {
+      this.#language = language;
+      void this.#send({ do: 'speak', language });
+    }
+    return this.#send<T>(message);
+  }
+
+  #send<T>(message: Message): Promise<T> {
     const answer = new Promise<T>((resolve, reject) => {
       this.#waiting.push({ resolve: resolve as (value: unknown) => void, reject });
     });
-    this.#worker.postMessage(JSON.stringify(message));
+    this.#worker?.postMessage(JSON.stringify(message));
     return answer;
   }
 
@@ -57,6 +71,7 @@ export class Local implements Answers {
     const waiting = this.#waiting.splice(0);
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.#language = 'en';
     waiting.forEach((w) => w.reject(new Error(why || 'the worker stopped')));
   }
 }

@@ -88,7 +88,7 @@ fn inexact(all: &[Variable], version: Version) -> Vec<Problem> {
             "FMI 2.0 has no whole numbers of 64 bits: `{}` is a Real there, exact up to 2^53; FMI 3.0 has them",
             v.name
         );
-        Problem::new(&codes::DIFFERENT, v.at, text)
+        Problem::new(&codes::DIFFERENT, v.at, g7_model::Said::foreign(text))
     };
     all.iter().filter(long).filter(|v| v.at != Span::default()).map(said).collect()
 }

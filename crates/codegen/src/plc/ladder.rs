@@ -97,9 +97,12 @@ pub(crate) fn ladder(e: &form::Block, place: Span, plain: bool) -> Result<Ladder
     }
     match l.refused {
         Some(what) => {
-            let problem =
-                Problem::new(&codes::NOT_CARRIED, place, format!("{what} cannot be printed as Ladder"));
-            Err(vec![if what == SEARCH { problem.help(ONE_PASS) } else { problem }])
+            let problem = Problem::new(
+                &codes::NOT_CARRIED,
+                place,
+                g7_model::Said::foreign(format!("{what} cannot be printed as Ladder")),
+            );
+            Err(vec![if what == SEARCH { problem.help(g7_model::Said::foreign(ONE_PASS)) } else { problem }])
         }
         None => Ok(Ladder { variables: l.variables.into_list(), rungs: l.rungs }),
     }

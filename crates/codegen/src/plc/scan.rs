@@ -57,7 +57,7 @@ pub(super) fn block(
     let overflow = spare::overflow(&e).map(|at| {
         let text =
             "arithmetic that overflows is a fault of a run here; a controller goes on as its maker decided";
-        Problem::new(&codes::DIFFERENT, at, text)
+        Problem::new(&codes::DIFFERENT, at, g7_model::Said::foreign(text))
     });
     let signals = signals(c, &e);
     let inside = native::native(&mut e, dialect.own_blocks);
@@ -105,8 +105,8 @@ fn first_of_calls(e: &Equations) -> HashSet<MemoryId> {
 impl Scan<'_> {
     pub(super) fn cannot(&mut self, what: &str) {
         let text = format!("{what} cannot be printed as equations for a PLC");
-        if self.problems.iter().all(|p| p.what != text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
+        if self.problems.iter().all(|p| *p.what != *text) {
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
         }
     }
 

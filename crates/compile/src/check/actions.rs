@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Lasting, Problem, Qualifier, Span, codes};
+use g7_model::{Lasting, Problem, Qualifier, Span, codes, say};
 
 use super::facts::Facts;
 use super::solve::Question;
@@ -40,19 +40,19 @@ fn pulse(unit: &Unit, action: &Action, problems: &mut Vec<Problem>) {
             Problem::new(
                 &codes::PULSE_TWICE,
                 action.at,
-                "under `P` this body runs twice: in the pulse and in the final scan",
+                say!("under `P` this body runs twice: in the pulse and in the final scan"),
             )
-            .help("write `P1`, which runs once, or set `no-final-scan`"),
+            .help(say!("write `P1`, which runs once, or set `no-final-scan`")),
         );
     }
 }
 
 fn macro_acts(step: &Step, action: &Action, problems: &mut Vec<Problem>) {
     if matches!(step.sort, StepSort::Macro(_)) {
-        let what = format!("macro-step `{}` has an action of its own", step.name);
-        problems.push(Problem::new(&codes::MACRO_ACTS, action.at, what).help(
-            "put it into the steps of the expansion; it runs here as long as the macro-step is active",
-        ));
+        let what = say!("macro-step `{}` has an action of its own", step.name);
+        problems.push(Problem::new(&codes::MACRO_ACTS, action.at, what).help(say!(
+            "put it into the steps of the expansion; it runs here as long as the macro-step is active"
+        )));
     }
 }
 
@@ -61,8 +61,12 @@ fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
     let ActionKind::OnEvent { event, .. } = &action.kind else { return };
     if !has_edge(event) {
         problems.push(
-            Problem::new(&codes::EVENT_WITHOUT_EDGE, event.at, "the event of a stored action needs an edge")
-                .help("write `↑` or `↓` before what makes the event, for example `on ↑a: …`"),
+            Problem::new(
+                &codes::EVENT_WITHOUT_EDGE,
+                event.at,
+                say!("the event of a stored action needs an edge"),
+            )
+            .help(say!("write `↑` or `↓` before what makes the event, for example `on ↑a: …`")),
         );
         return;
     }
@@ -74,9 +78,9 @@ fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
             Problem::new(
                 &codes::EVENT_LASTS,
                 event.at,
-                "this event can be true without an edge: the action then runs in every evolution",
+                say!("this event can be true without an edge: the action then runs in every evolution"),
             )
-            .help("put an edge into each of its alternatives, for example `↑a or ↑b`"),
+            .help(say!("put an edge into each of its alternatives, for example `↑a or ↑b`")),
         );
     }
 }
@@ -92,8 +96,12 @@ fn condition(action: &Action, problems: &mut Vec<Problem>) {
     let continuous = qualifier.lasting() == Lasting::WithStep;
     if continuous && has_edge(c) {
         problems.push(
-            Problem::new(&codes::EDGE_IN_CONDITION, c.at, "the condition of a continuous action has an edge")
-                .help("an edge lasts no time: use a stored action, `on ↑a: V := TRUE`"),
+            Problem::new(
+                &codes::EDGE_IN_CONDITION,
+                c.at,
+                say!("the condition of a continuous action has an edge"),
+            )
+            .help(say!("an edge lasts no time: use a stored action, `on ↑a: V := TRUE`")),
         );
     }
 }
@@ -130,9 +138,11 @@ fn times(unit: &Unit, problems: &mut Vec<Problem>) {
                 Governed::Var(v) => unit.vars.get(v.index()).map_or("", |v| &*v.name),
                 Governed::Body(b) => unit.bodies.get(b.index()).map_or("", |b| &*b.name),
             };
-            let place = if first.1 == step { "one step" } else { "steps that start together" };
-            let what = format!("`{name}` has two timed qualifiers in {place}");
-            problems.push(Problem::new(&codes::TWO_TIMES, action.at, what).related(first.0, "and this one"));
+            let place = if first.1 == step { say!("one step") } else { say!("steps that start together") };
+            let what = say!("`{name}` has two timed qualifiers in {place}");
+            problems.push(
+                Problem::new(&codes::TWO_TIMES, action.at, what).related(first.0, say!("and this one")),
+            );
         }
     }
 }

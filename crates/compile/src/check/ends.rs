@@ -3,7 +3,7 @@
 //! Both are facts of the drawing: receptivities are taken as if they could all be true. A chart that
 //! is forced, enclosed or set from elsewhere is left in other ways, and is not looked at.
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, codes, say};
 
 use super::facts::Facts;
 use super::structure::{steps_of, transitions_of};
@@ -20,9 +20,9 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
         dead_ends(facts, chart, problems);
         for fork in transitions_of(unit, chart).iter().filter(|t| forks(t)) {
             if !joins(facts, fork) {
-                let what = "no transition joins the branches that begin here";
+                let what = say!("no transition joins the branches that begin here");
                 problems.push(Problem::new(&codes::NEVER_JOINS, fork.at, what).help(
-                    "end them together by `(a, b) -> c when …`; if each is to run on, give them charts of their own",
+                    say!("end them together by `(a, b) -> c when …`; if each is to run on, give them charts of their own"),
                 ));
             }
         }
@@ -57,10 +57,10 @@ fn dead_ends(facts: &Facts<'_>, chart: &Chart, problems: &mut Vec<Problem>) {
         if left || !matches!(step.sort, StepSort::Plain) && !step.initial && steps.len() == 1 {
             continue;
         }
-        let what = format!("no transition leads out of step `{}`", step.name);
+        let what = say!("no transition leads out of step `{}`", step.name);
         problems.push(
             Problem::new(&codes::DEAD_END, step.at, what)
-                .help(format!("write a transition `{} -> … when …`", step.name)),
+                .help(say!("write a transition `{} -> … when …`", step.name)),
         );
     }
 }

@@ -7,7 +7,7 @@
 
 use std::collections::BTreeSet;
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, codes, say};
 
 use super::facts::Facts;
 use super::solve::Question;
@@ -32,16 +32,16 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 /// Warns of a receptivity that no values make true.
 fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
     let what = match &t.receptivity.kind {
-        ExprKind::Const(Value::Bool(false)) => "this receptivity is never true",
+        ExprKind::Const(Value::Bool(false)) => say!("this receptivity is never true"),
         _ if is_free(&t.receptivity, &mut Vec::new()) => return,
         // A single value can always be true; only combinations need the search.
         ExprKind::Binary(..) | ExprKind::Not(_) | ExprKind::StepActive(_) => {
             let mut question = Question::new(facts);
             question.demand(&t.receptivity, true);
             if question.possible() == Some(false) {
-                "this receptivity is never true: its parts contradict each other"
+                say!("this receptivity is never true: its parts contradict each other")
             } else if question.with_active(&t.from) && question.possible() == Some(false) {
-                "this receptivity is never true while the preceding steps are active"
+                say!("this receptivity is never true while the preceding steps are active")
             } else {
                 return;
             }
@@ -107,18 +107,20 @@ fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
                 Problem::new(
                     &codes::PRIORITY_IGNORED,
                     t.at,
-                    "this priority has no effect: all branches that are true clear",
+                    say!("this priority has no effect: all branches that are true clear"),
                 )
-                .help("set `single-token` behind the profile, or make the receptivities exclude each other"),
+                .help(say!(
+                    "set `single-token` behind the profile, or make the receptivities exclude each other"
+                )),
             );
         } else if t.from.iter().all(|f| facts.branches(*f).len() < 2) {
             problems.push(
                 Problem::new(
                     &codes::PRIORITY_IGNORED,
                     t.at,
-                    "this priority has no effect: no other transition shares a preceding step",
+                    say!("this priority has no effect: no other transition shares a preceding step"),
                 )
-                .help("leave the number out"),
+                .help(say!("leave the number out")),
             );
         }
     }
@@ -168,15 +170,15 @@ fn same(a: &[StepId], b: &[StepId]) -> bool {
 
 fn conflict(unit: &Unit, step: StepId, a: &Transition, b: &Transition) -> Problem {
     let name = unit.steps.get(step.index()).map_or("", |s| &*s.name);
-    let what = format!("two branches behind step `{name}` can be true together, and then both clear");
+    let what = say!("two branches behind step `{name}` can be true together, and then both clear");
     let cure = if unit.rules.numbered_exclusive {
-        "number the branches by `priority`"
+        say!("number the branches by `priority`")
     } else {
-        "give the first branch priority by `single-token` behind the profile"
+        say!("give the first branch priority by `single-token` behind the profile")
     };
     Problem::new(&codes::CONFLICT, b.receptivity.at, what)
-        .related(a.receptivity.at, "can be true at the same time")
-        .help(format!(
+        .related(a.receptivity.at, say!("can be true at the same time"))
+        .help(say!(
             "let the receptivities exclude each other (`… and not (…)`); or {cure}; \
              or, if both are meant, start them by one transition, `{name} -> (…, …)`"
         ))

@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Said, codes, say};
 
 use super::facts::Facts;
 use crate::ir::{ActionKind, ChartId, ChartRole, Situation, StepId, Unit};
@@ -83,9 +83,9 @@ fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
         if seen.contains(&order.by) {
             let name = |c: ChartId| unit.charts.get(c.index()).map_or("", |c| &*c.name);
             let what = if order.by == order.on {
-                format!("chart `{}` forces itself", name(order.by))
+                say!("chart `{}` forces itself", name(order.by))
             } else {
-                format!(
+                say!(
                     "chart `{}` forces `{}`, which forces or encloses it in turn",
                     name(order.by),
                     name(order.on)
@@ -93,7 +93,7 @@ fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
             };
             problems.push(
                 Problem::new(&codes::FORCING_CIRCLE, order.at, what)
-                    .help("forcing goes down a hierarchy: let one chart above force the others"),
+                    .help(say!("forcing goes down a hierarchy: let one chart above force the others")),
             );
         }
     }
@@ -107,11 +107,13 @@ fn both(facts: &Facts<'_>, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
         let together = chart.enclosed_by.filter(|e| !facts.exclude(*e, order.step));
         let Some(encloser) = together else { continue };
         let at = unit.steps.get(encloser.index()).map_or(chart.at, |s| s.at);
-        let what = format!("chart `{}` is forced and enclosed at once", chart.name);
+        let what = say!("chart `{}` is forced and enclosed at once", chart.name);
         problems.push(
             Problem::new(&codes::FORCED_AND_ENCLOSED, order.at, what)
-                .related(at, "this step encloses it")
-                .help("force it from steps that are never active with the enclosing step, or use one of the two"),
+                .related(at, say!("this step encloses it"))
+                .help(say!(
+                    "force it from steps that are never active with the enclosing step, or use one of the two"
+                )),
         );
     }
 }
@@ -139,15 +141,15 @@ fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
                 let name = unit.charts.get(order.on.index()).map_or("", |c| &*c.name);
                 // The present situation may be the one that the other order names.
                 let (is, but) = if ones.is_some() && others.is_some() {
-                    ("is", "")
+                    (say!("is"), Said::default())
                 } else {
-                    ("can be", " unless the chart is in the named situation")
+                    (say!("can be"), say!(" unless the chart is in the named situation"))
                 };
-                let what = format!("chart `{name}` {is} forced into two situations at one moment");
+                let what = say!("chart `{name}` {is} forced into two situations at one moment");
                 problems.push(
                     Problem::new(&codes::ORDERS_DISAGREE, order.at, what)
-                        .related(before.at, "another situation is ordered here")
-                        .help(format!("a run stops with a fault there{but}; keep one of the two orders")),
+                        .related(before.at, say!("another situation is ordered here"))
+                        .help(say!("a run stops with a fault there{but}; keep one of the two orders")),
                 );
             }
         }

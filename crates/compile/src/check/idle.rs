@@ -6,7 +6,7 @@
 
 use std::collections::HashSet;
 
-use g7_model::{Document, Item, Problem, VarDecl, VarKind, codes};
+use g7_model::{Document, Item, Problem, VarDecl, VarKind, codes, say};
 
 use super::named::names_of_charts;
 
@@ -28,11 +28,12 @@ pub(super) fn check(doc: &Document, problems: &mut Vec<Problem>) {
         }
         for name in v.names.iter().filter(|n| !n.text.is_empty() && !named.contains(&*n.text)) {
             let (code, what, help) = if v.kind == VarKind::Input {
-                (&codes::INPUT_UNREAD, "reads the input", "read it in a receptivity, or delete it")
+                let what = say!("no chart reads the input `{}`", name.text);
+                (&codes::INPUT_UNREAD, what, say!("read it in a receptivity, or delete it"))
             } else {
-                (&codes::OUTPUT_UNDRIVEN, "drives the output", "drive it by an action, or delete it")
+                let what = say!("no chart drives the output `{}`", name.text);
+                (&codes::OUTPUT_UNDRIVEN, what, say!("drive it by an action, or delete it"))
             };
-            let what = format!("no chart {what} `{}`", name.text);
             problems.push(Problem::new(code, name.at.0, what).help(help));
         }
     }

@@ -6,7 +6,7 @@
 
 use std::collections::BTreeSet;
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Said, codes, say};
 
 use super::exclusion::always;
 use super::facts::Facts;
@@ -57,10 +57,11 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
         } else {
             names.join(" → ")
         };
-        let what = format!("the loop {way} never rests: each of its receptivities is always true");
+        let way = Said::foreign(way);
+        let what = say!("the loop {way} never rests: each of its receptivities is always true");
         problems.push(
             Problem::new(&codes::RESTLESS_LOOP, first.at, what)
-                .help("give at least one of its transitions a receptivity that can be false"),
+                .help(say!("give at least one of its transitions a receptivity that can be false")),
         );
     }
 }

@@ -4,7 +4,7 @@
 //! transition under it) are as high as the distance of two steps. Pages follow one another
 //! downward.
 
-use g7_model::{Document, Item, Placed, Problem, codes};
+use g7_model::{Document, Item, Placed, Problem, Said, codes, say};
 
 /// Distance of two branches and of two steps, in hundredths of the drawing's unit.
 const PITCH: i32 = 1300;
@@ -17,7 +17,7 @@ const STEP_LINES: i32 = 6;
 
 /// Reports the first symbol of each layout that stands beyond the last page; `plc` is the name of the
 /// target.
-pub(super) fn check(doc: &Document, plc: &str, problems: &mut Vec<Problem>) {
+pub(super) fn check(doc: &Document, plc: &Said, problems: &mut Vec<Problem>) {
     for item in &doc.items {
         let Item::Layout(layout) = item else { continue };
         let placed = layout.places.iter().filter(|p| !matches!(p.what, Placed::Comment(_)));
@@ -32,14 +32,14 @@ pub(super) fn check(doc: &Document, plc: &str, problems: &mut Vec<Problem>) {
             column >= i64::from(PITCH * COLUMNS) || line >= i64::from(PITCH * STEP_LINES * PAGES)
         });
         if let Some(first) = beyond {
-            let what = format!(
+            let what = say!(
                 "the drawing of `{}` does not fit: a {plc} has {PAGES} pages of 14 lines and {COLUMNS} columns",
                 layout.chart.text
             );
-            problems.push(
-                Problem::new(&codes::TARGET_PAGES, first.at.0, what)
-                    .help("move it nearer, or leave the layout out: the chart is then drawn by itself"),
-            );
+            problems
+                .push(Problem::new(&codes::TARGET_PAGES, first.at.0, what).help(say!(
+                    "move it nearer, or leave the layout out: the chart is then drawn by itself"
+                )));
         }
     }
 }

@@ -3,7 +3,7 @@
 //! A token may move everywhere, as if all receptivities were true. A step that it does not reach is
 //! not reached in any run.
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, codes, say};
 
 use super::facts::Facts;
 use super::structure::steps_of;
@@ -115,8 +115,8 @@ fn tell(unit: &Unit, chart: &Chart, outside: bool, reached: &[bool], problems: &
     if !of_chart.contains(&true) {
         if !outside {
             problems.push(
-                Problem::new(&codes::NEVER_STARTS, chart.at, format!("chart `{}` never starts", chart.name))
-                    .help("mark its first step `initial`, or link (`*`), force or set a step of it"),
+                Problem::new(&codes::NEVER_STARTS, chart.at, say!("chart `{}` never starts", chart.name))
+                    .help(say!("mark its first step `initial`, or link (`*`), force or set a step of it")),
             );
         }
         return;
@@ -125,7 +125,7 @@ fn tell(unit: &Unit, chart: &Chart, outside: bool, reached: &[bool], problems: &
         problems.push(Problem::new(
             &codes::UNREACHABLE,
             step.at,
-            format!("no way leads to step `{}`", step.name),
+            say!("no way leads to step `{}`", step.name),
         ));
     }
 }

@@ -3,7 +3,7 @@
 //! Divisions of variables are left alone: there the whole quotient is what one mostly wants.
 
 use g7_model::visit::Visitor;
-use g7_model::{BinaryOp, Document, Expr, ExprKind, Fix, Literal, Name, Order, Problem, Span, codes};
+use g7_model::{BinaryOp, Document, Expr, ExprKind, Fix, Literal, Name, Order, Problem, Span, codes, say};
 
 pub(super) fn check(doc: &Document, problems: &mut Vec<Problem>) {
     Divisions { problems }.document(doc);
@@ -31,11 +31,10 @@ impl<'d> Visitor<'d> for Divisions<'_> {
                     && x.checked_rem(*y).is_some_and(|r| r != 0)
                 {
                     let (whole, rest) = (x / y, x % y);
-                    let what = format!(
-                        "this division of whole numbers is {whole}, and its remainder {rest} is lost"
-                    );
-                    let help = format!("write `{x}.0 / {y}.0` for the fraction, or `{whole}`");
-                    let fix = Fix::likely(format!("write `{x}.0 / {y}.0`"), e.at.0, format!("{x}.0 / {y}.0"));
+                    let what =
+                        say!("this division of whole numbers is {whole}, and its remainder {rest} is lost");
+                    let help = say!("write `{x}.0 / {y}.0` for the fraction, or `{whole}`");
+                    let fix = Fix::likely(say!("write `{x}.0 / {y}.0`"), e.at.0, format!("{x}.0 / {y}.0"));
                     self.problems
                         .push(Problem::new(&codes::REMAINDER_LOST, e.at.0, what).help(help).fix(fix));
                 }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, codes, say};
 
 use super::tree::Form;
 use crate::circles::closing_calls;
@@ -35,26 +35,26 @@ pub(super) fn transitions_of<'u>(unit: &'u Unit, chart: &Chart) -> &'u [Transiti
 /// An expansion or task has one entry step and one exit step; a chart has neither.
 fn ends(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
     if chart.role == ChartRole::Chart {
-        for (end, word) in [(chart.entry, "an entry step"), (chart.exit, "an exit step")] {
+        for (end, word) in [(chart.entry, say!("an entry step")), (chart.exit, say!("an exit step"))] {
             let Some(step) = end.and_then(|s| unit.steps.get(s.index())) else { continue };
-            let what = format!("{word} belongs to an expansion or a task, `{}` is a chart", chart.name);
+            let what = say!("{word} belongs to an expansion or a task, `{}` is a chart", chart.name);
             problems.push(
                 Problem::new(&codes::NOT_HERE, step.at, what)
-                    .help("leave the word out, or write `macrochart` or `task` for `chart`"),
+                    .help(say!("leave the word out, or write `macrochart` or `task` for `chart`")),
             );
         }
         return;
     }
     let missing = match (chart.entry, chart.exit) {
         (Some(_), Some(_)) => return,
-        (None, Some(_)) => "entry step",
-        (Some(_), None) => "exit step",
-        (None, None) => "entry step and no exit step",
+        (None, Some(_)) => say!("entry step"),
+        (Some(_), None) => say!("exit step"),
+        (None, None) => say!("entry step and no exit step"),
     };
-    let what = if chart.role == ChartRole::Task { "task" } else { "expansion" };
+    let what = if chart.role == ChartRole::Task { say!("task") } else { say!("expansion") };
     problems.push(
-        Problem::new(&codes::NO_ENDS, chart.at, format!("{what} `{}` has no {missing}", chart.name))
-            .help("write `entry step E` for its first step and `exit step S` for its last one"),
+        Problem::new(&codes::NO_ENDS, chart.at, say!("{what} `{}` has no {missing}", chart.name))
+            .help(say!("write `entry step E` for its first step and `exit step S` for its last one")),
     );
 }
 
@@ -64,12 +64,12 @@ fn unused(unit: &Unit, problems: &mut Vec<Problem>) {
     for (k, chart) in unit.charts.iter().enumerate() {
         let (what, help) = match chart.role {
             ChartRole::Unused => {
-                let help = format!("name it by a macro-step, `macro M = {}`, or delete it", chart.name);
-                (format!("no macro-step has the expansion `{}`", chart.name), help)
+                let help = say!("name it by a macro-step, `macro M = {}`, or delete it", chart.name);
+                (say!("no macro-step has the expansion `{}`", chart.name), help)
             }
             ChartRole::Task if !called.contains(&ChartId(k as u32)) => {
-                let help = format!("call it from a step, `call {}`, or delete it", chart.name);
-                (format!("no step calls the task `{}`", chart.name), help)
+                let help = say!("call it from a step, `call {}`, or delete it", chart.name);
+                (say!("no step calls the task `{}`", chart.name), help)
             }
             _ => continue,
         };
@@ -87,16 +87,17 @@ fn starts_empty(unit: &Unit, problems: &mut Vec<Problem>) {
             if steps.is_empty() || steps.iter().any(|s| s.initial) {
                 continue;
             }
-            let what = format!(
+            let what = say!(
                 "the initial step `{}` encloses `{}`, which has no initial step and starts empty",
-                step.name, chart.name
+                step.name,
+                chart.name
             );
             let problem = Problem::new(&codes::STARTS_EMPTY, step.at, what);
             problems.push(match steps.iter().find(|s| s.linked) {
                 Some(linked) => problem
-                    .related(linked.at, "this activation link acts at later activations only")
-                    .help(format!("write `initial step {} *`", linked.name)),
-                None => problem.help(format!("mark a step of `{}` `initial`", chart.name)),
+                    .related(linked.at, say!("this activation link acts at later activations only"))
+                    .help(say!("write `initial step {} *`", linked.name)),
+                None => problem.help(say!("mark a step of `{}` `initial`", chart.name)),
             });
         }
     }
@@ -114,11 +115,11 @@ fn tasks_in_a_circle(unit: &Unit, problems: &mut Vec<Problem>) {
     }
     for (task, at) in closing_calls(&callees) {
         let Some(task) = unit.charts.get(task) else { continue };
-        let what = format!("the task `{}` is called while it runs", task.name);
+        let what = say!("the task `{}` is called while it runs", task.name);
         problems.push(
-            Problem::new(&codes::RECURSION, at, what)
-                .related(task.at, "this task")
-                .help("a task cannot call itself, nor one that calls it; lead a transition back instead"),
+            Problem::new(&codes::RECURSION, at, what).related(task.at, say!("this task")).help(say!(
+                "a task cannot call itself, nor one that calls it; lead a transition back instead"
+            )),
         );
     }
 }
@@ -144,11 +145,11 @@ fn task(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
     for id in [chart.entry, chart.exit].into_iter().flatten() {
         let Some(step) = unit.steps.get(id.index()) else { continue };
         if let Some(action) = step.actions.first() {
-            let what = format!("step `{}` is an end of task `{}` and has an action", step.name, chart.name);
+            let what = say!("step `{}` is an end of task `{}` and has an action", step.name, chart.name);
             problems.push(
                 Problem::new(&codes::TASK_END_ACTS, action.at, what)
-                    .related(step.at, "this step waits between two calls")
-                    .help("put the action into a step between the two ends"),
+                    .related(step.at, say!("this step waits between two calls"))
+                    .help(say!("put the action into a step between the two ends")),
             );
         }
     }
@@ -161,9 +162,9 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
             Problem::new(
                 &codes::NO_STEPS,
                 t.at,
-                "this transition has neither a preceding nor a succeeding step",
+                say!("this transition has neither a preceding nor a succeeding step"),
             )
-            .help("a source has a succeeding step, `() -> 1`; a sink a preceding one, `1 -> ()`"),
+            .help(say!("a source has a succeeding step, `() -> 1`; a sink a preceding one, `1 -> ()`")),
         );
     }
     for list in [&t.from, &t.to].into_iter().filter(|list| list.len() > 1) {
@@ -172,7 +173,7 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
             if !seen.insert(id)
                 && let Some(step) = unit.steps.get(id.index())
             {
-                let what = format!("step `{}` stands twice on one side of the transition", step.name);
+                let what = say!("step `{}` stands twice on one side of the transition", step.name);
                 problems.push(Problem::new(&codes::STEP_TWICE, t.at, what));
             }
         }
@@ -192,9 +193,9 @@ fn twice(unit: &Unit, problems: &mut Vec<Problem>) {
                     Problem::new(
                         &codes::SAME_TRANSITION,
                         t.at,
-                        "this transition stands in the chart already",
+                        say!("this transition stands in the chart already"),
                     )
-                    .related(first, "the same steps and the same receptivity"),
+                    .related(first, say!("the same steps and the same receptivity")),
                 );
             }
         }

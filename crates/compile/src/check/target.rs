@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::{Document, Problem, Qualifier, Span, TargetPlc, codes};
+use g7_model::{Document, Problem, Qualifier, Said, Span, TargetPlc, codes, say};
 
 use super::pages;
 use crate::ir::{ActionKind, Chart, ChartRole, StepId, StepSort, Unit};
@@ -17,7 +17,7 @@ const BRANCHES: usize = 11;
 
 /// The limits of a PLC.
 struct Limits {
-    name: &'static str,
+    name: Said,
     steps: usize,
     macros: usize,
     macro_steps: usize,
@@ -26,9 +26,15 @@ struct Limits {
 
 fn limits(plc: TargetPlc) -> Limits {
     match plc {
-        TargetPlc::Tsx3710 => Limits { name: "TSX 37-10", steps: 96, macros: 0, macro_steps: 0, total: 96 },
-        TargetPlc::Tsx3720 => Limits { name: "TSX 37-20", steps: 128, macros: 0, macro_steps: 0, total: 128 },
-        TargetPlc::Tsx57 => Limits { name: "TSX 57", steps: 250, macros: 64, macro_steps: 250, total: 1024 },
+        TargetPlc::Tsx3710 => {
+            Limits { name: Said::foreign("TSX 37-10"), steps: 96, macros: 0, macro_steps: 0, total: 96 }
+        }
+        TargetPlc::Tsx3720 => {
+            Limits { name: Said::foreign("TSX 37-20"), steps: 128, macros: 0, macro_steps: 0, total: 128 }
+        }
+        TargetPlc::Tsx57 => {
+            Limits { name: Said::foreign("TSX 57"), steps: 250, macros: 64, macro_steps: 250, total: 1024 }
+        }
     }
 }
 
@@ -38,7 +44,7 @@ pub(super) fn check(doc: &Document, unit: &Unit, plc: TargetPlc, problems: &mut 
     branches(unit, problems);
     words(unit, &most, problems);
     numbers(unit, &most, problems);
-    pages::check(doc, most.name, problems);
+    pages::check(doc, &most.name, problems);
 }
 
 /// Compares the counts with the limits. A problem is reported at the first element that exceeds
@@ -53,48 +59,48 @@ fn sizes(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
             (_, Some(ChartRole::Chart | ChartRole::Task)) => main.push(step.at),
         }
     }
-    let mut over = |code, places: &[Span], limit: usize, what: &str| {
+    let mut over = |code, places: &[Span], limit: usize, what: Said| {
         if let Some(first) = places.get(limit) {
-            let text = format!("{} {what}; a {} has room for {limit}", places.len(), most.name);
+            let text = say!("{} {what}; a {} has room for {limit}", places.len(), most.name);
             problems.push(Problem::new(code, *first, text));
         }
     };
-    over(&codes::TARGET_STEPS, &main, most.steps, "steps");
-    over(&codes::TARGET_MACROS, &macros, most.macros, "macro-steps");
+    over(&codes::TARGET_STEPS, &main, most.steps, say!("steps"));
+    over(&codes::TARGET_MACROS, &macros, most.macros, say!("macro-steps"));
     if most.macros > 0 {
         let all: Vec<Span> = main.iter().chain(&inner).copied().collect();
-        over(&codes::TARGET_STEPS, &all, most.total, "steps with those of macro-steps");
+        over(&codes::TARGET_STEPS, &all, most.total, say!("steps with those of macro-steps"));
         for chart in unit.charts.iter().filter(|c| matches!(c.role, ChartRole::Expansion(_))) {
             let steps = super::structure::steps_of(unit, chart).iter();
             let own: Vec<Span> =
                 steps.filter(|s| !matches!(s.sort, StepSort::Macro(_))).map(|s| s.at).collect();
-            over(&codes::TARGET_STEPS, &own, most.macro_steps, "steps of one macro-step");
+            over(&codes::TARGET_STEPS, &own, most.macro_steps, say!("steps of one macro-step"));
         }
     }
     let transitions: Vec<Span> = unit.transitions.iter().map(|t| t.at).collect();
-    over(&codes::TARGET_TRANSITIONS, &transitions, TRANSITIONS, "transitions");
+    over(&codes::TARGET_TRANSITIONS, &transitions, TRANSITIONS, say!("transitions"));
 }
 
 /// Finds divergences and convergences with too many branches.
 fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
-    let mut wide = |n: usize, what: &str, at: Span| {
+    let mut wide = |n: usize, what: Said, at: Span| {
         if n > BRANCHES {
-            let text = format!("{what} with {n} branches; {BRANCHES} are possible");
+            let text = say!("{what} with {n} branches; {BRANCHES} are possible");
             problems.push(Problem::new(&codes::TARGET_BRANCHES, at, text));
         }
     };
     let mut out: BTreeMap<StepId, usize> = BTreeMap::new();
     let mut into: BTreeMap<StepId, usize> = BTreeMap::new();
     for t in &unit.transitions {
-        wide(t.to.len(), "an AND divergence", t.at);
-        wide(t.from.len(), "an AND convergence", t.at);
+        wide(t.to.len(), say!("an AND divergence"), t.at);
+        wide(t.from.len(), say!("an AND convergence"), t.at);
         t.from.iter().for_each(|s| *out.entry(*s).or_default() += 1);
         t.to.iter().for_each(|s| *into.entry(*s).or_default() += 1);
     }
-    for (list, what) in [(out, "an OR divergence"), (into, "an OR convergence")] {
+    for (list, what) in [(out, say!("an OR divergence")), (into, say!("an OR convergence"))] {
         for (step, n) in list {
             if let Some(s) = unit.steps.get(step.index()) {
-                wide(n, what, s.at);
+                wide(n, what.clone(), s.at);
             }
         }
     }
@@ -103,16 +109,16 @@ fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
 /// Finds actions that PL7 does not have: it knows actions on activation, on deactivation and
 /// continuous ones.
 fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
-    let mut cannot = |what: &str, at: Span| {
-        let text = format!("a {} has no {what}", most.name);
+    let mut cannot = |what: Said, at: Span| {
+        let text = say!("a {} has no {what}", most.name);
         problems.push(Problem::new(&codes::TARGET_WORDS, at, text));
     };
     for step in &unit.steps {
         if matches!(step.sort, StepSort::Enclosing(_)) {
-            cannot("enclosing steps", step.at);
+            cannot(say!("enclosing steps"), step.at);
         }
         for (_, at) in &step.calls {
-            cannot("tasks", *at);
+            cannot(say!("tasks"), *at);
         }
         for action in &step.actions {
             match &action.kind {
@@ -120,13 +126,13 @@ fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
                 | ActionKind::Named { qualifier, .. }
                 | ActionKind::Work { qualifier, .. } => {
                     if qualifier.timed() || *qualifier == Qualifier::P {
-                        cannot(&format!("qualifier `{}`", qualifier.name()), action.at);
+                        cannot(say!("qualifier `{}`", qualifier.name()), action.at);
                     }
                 }
-                ActionKind::OnEvent { .. } => cannot("actions on an event", action.at),
-                ActionKind::Force(..) => cannot("forcing orders", action.at),
+                ActionKind::OnEvent { .. } => cannot(say!("actions on an event"), action.at),
+                ActionKind::Force(..) => cannot(say!("forcing orders"), action.at),
                 ActionKind::Enable(_) | ActionKind::MaskChart(_) | ActionKind::MaskVar(_) => {
-                    cannot("orders to enable or mask", action.at);
+                    cannot(say!("orders to enable or mask"), action.at);
                 }
                 ActionKind::EachScan { .. } => {}
             }
@@ -134,10 +140,10 @@ fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     }
     for t in &unit.transitions {
         if let (Some(first), Some(last)) = (t.on_clearing.first(), t.on_clearing.last()) {
-            cannot("actions on clearing", first.at.to(last.at));
+            cannot(say!("actions on clearing"), first.at.to(last.at));
         }
         if t.from.is_empty() || t.to.is_empty() {
-            cannot("source and sink transitions", t.at);
+            cannot(say!("source and sink transitions"), t.at);
         }
     }
 }
@@ -178,10 +184,10 @@ fn numbers_of(
             Some(_) if is_macro => {}
             Some(n) => {
                 if let Some(first) = taken.insert(n, step.at) {
-                    let text =
-                        format!("two steps have the number {n}: in PL7 all charts share one numbering");
+                    let text = say!("two steps have the number {n}: in PL7 all charts share one numbering");
                     problems.push(
-                        Problem::new(&codes::TARGET_WORDS, step.at, text).related(first, "the other one"),
+                        Problem::new(&codes::TARGET_WORDS, step.at, text)
+                            .related(first, say!("the other one")),
                     );
                 }
             }
@@ -189,10 +195,10 @@ fn numbers_of(
             None if crowded && step.name.parse::<usize>().is_ok() => {}
             None => {
                 let text = if is_macro {
-                    format!("macro-step `{}` is none of M0 to M{}", step.name, most.macros - 1)
+                    say!("macro-step `{}` is none of M0 to M{}", step.name, most.macros - 1)
                 } else {
                     let last = limit - 1;
-                    format!("step `{}` has no number from 0 to {last}, as a {} wants", step.name, most.name)
+                    say!("step `{}` has no number from 0 to {last}, as a {} wants", step.name, most.name)
                 };
                 problems.push(Problem::new(&codes::TARGET_WORDS, step.at, text));
             }

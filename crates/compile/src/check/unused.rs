@@ -8,7 +8,7 @@
 
 use std::collections::HashSet;
 
-use g7_model::{ChartItem, Document, Item, Problem, VarDecl, VarKind, codes};
+use g7_model::{ChartItem, Document, Item, Problem, VarDecl, VarKind, codes, say};
 
 use super::named::names;
 
@@ -37,9 +37,9 @@ pub(super) fn check(doc: &Document, problems: &mut Vec<Problem>) {
                 Problem::new(
                     &codes::UNUSED_VARIABLE,
                     name.at.0,
-                    format!("nothing names the variable `{}`", name.text),
+                    say!("nothing names the variable `{}`", name.text),
                 )
-                .help("delete it"),
+                .help(say!("delete it")),
             );
         }
     }

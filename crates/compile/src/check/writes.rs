@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use g7_model::{Problem, Qualifier, Span, codes};
+use g7_model::{Problem, Qualifier, Span, codes, say};
 
 use super::actions::{blocked, is_grafcet};
 use super::tree::{Constant, statements, within, written};
@@ -149,16 +149,17 @@ impl<'u> Moment<'u> {
             let name = unit.vars.get(b.var.index()).map_or("", |v| &*v.name);
             let (what, help) = if meet {
                 (
-                    format!("`{name}` gets two values when one transition clears"),
-                    "the later one stays and each run reports the conflict; keep one of them",
+                    say!("`{name}` gets two values when one transition clears"),
+                    say!("the later one stays and each run reports the conflict; keep one of them"),
                 )
             } else {
                 (
-                    format!("`{name}` gets two values at one moment"),
-                    "both are written when the step changes; keep one of them",
+                    say!("`{name}` gets two values at one moment"),
+                    say!("both are written when the step changes; keep one of them"),
                 )
             };
-            problems.push(Problem::new(code, b.at, what).related(a.at, "another value here").help(help));
+            problems
+                .push(Problem::new(code, b.at, what).related(a.at, say!("another value here")).help(help));
         }
     }
 }
@@ -209,24 +210,23 @@ fn classes(unit: &Unit, blocked: &HashSet<VarId>, problems: &mut Vec<Problem>) {
         let (code, what) = match (grafcet, stored.contains_key(&v)) {
             (true, true) => (
                 &codes::TWO_CLASSES,
-                format!("`{name}` is driven by a continuous action and set or reset by a stored one"),
+                say!("`{name}` is driven by a continuous action and set or reset by a stored one"),
             ),
-            (true, false) => (
-                &codes::TWO_CLASSES,
-                format!("`{name}` is driven by a continuous action and assigned as well"),
-            ),
+            (true, false) => {
+                (&codes::TWO_CLASSES, say!("`{name}` is driven by a continuous action and assigned as well"))
+            }
             (false, true) => {
-                (&codes::ALSO_WRITTEN, format!("`{name}` follows an action and is set or reset as well"))
+                (&codes::ALSO_WRITTEN, say!("`{name}` follows an action and is set or reset as well"))
             }
             (false, false) => (
                 &codes::ALSO_WRITTEN,
-                format!("`{name}` follows an action and is written by a statement as well"),
+                say!("`{name}` follows an action and is written by a statement as well"),
             ),
         };
         problems.push(
             Problem::new(code, *other, what)
-                .related(at, "follows the activity of steps here")
-                .help("use one of the two ways for a variable, not both"),
+                .related(at, say!("follows the activity of steps here"))
+                .help(say!("use one of the two ways for a variable, not both")),
         );
     }
 }

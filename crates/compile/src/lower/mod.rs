@@ -37,7 +37,7 @@ mod work;
 use std::collections::BTreeMap;
 
 use g7_engine::{Addr, Code, Extra, LoadError, NONE, Program, Rows, Step, Tables};
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Said, Span, codes, say};
 
 use crate::ir::{ChartId, Expr, StepId, Unit};
 use crate::symbols::Symbols;
@@ -100,20 +100,18 @@ fn refused_by_engine(error: LoadError, symbols: &Symbols) -> Problem {
         LoadError::Large { table } => Problem::new(
             &codes::TOO_LARGE,
             Span::default(),
-            format!("the program would be too large ({table})"),
+            say!("the program would be too large ({})", Said::foreign(table)),
         ),
         // The tables made here are right; this says which are not, should one be wrong.
-        other => Problem::new(
-            &codes::TOO_LARGE,
-            Span::default(),
-            format!("the program cannot be loaded: {other:?}"),
-        ),
+        other => {
+            Problem::new(&codes::TOO_LARGE, Span::default(), say!("the program cannot be loaded: {other:?}"))
+        }
     }
 }
 
 fn deep(at: Span) -> Problem {
-    Problem::new(&codes::TOO_DEEP, at, "this is nested too deeply to be run")
-        .help("give a part of it a variable of its own")
+    Problem::new(&codes::TOO_DEEP, at, say!("this is nested too deeply to be run"))
+        .help(say!("give a part of it a variable of its own"))
 }
 
 /// Lowers a unit, and queries on it, to tables.
@@ -130,7 +128,7 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
     }
     if let Some(var) = words.full {
         let at = unit.vars.get(var.index()).map(|v| v.at).unwrap_or_default();
-        return Err(Problem::new(&codes::TOO_LARGE, at, "the variables take too much room"));
+        return Err(Problem::new(&codes::TOO_LARGE, at, say!("the variables take too much room")));
     }
     let mut l = Lower {
         unit,
@@ -166,8 +164,8 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
         return Err(match refusal {
             Refusal::Deep => deep(at),
             Refusal::Large => {
-                Problem::new(&codes::TOO_LARGE, at, "the program would have too many instructions")
-                    .help("functions are written out at each call: call fewer of them from each other")
+                Problem::new(&codes::TOO_LARGE, at, say!("the program would have too many instructions"))
+                    .help(say!("functions are written out at each call: call fewer of them from each other"))
             }
         });
     }

@@ -24,8 +24,8 @@ pub use program::{Binding, Link, PlantProgram, compile_plant};
 use std::collections::HashMap;
 
 use g7_model::{
-    BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Stmt, Type, VarDecl,
-    VarKind, codes,
+    BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Said, Stmt, Type,
+    VarDecl, VarKind, codes, say,
 };
 
 use crate::ir::{Unit, VarClass};
@@ -243,9 +243,10 @@ impl<'d> Maker<'d> {
     }
 
     fn twice(&mut self, name: &Name, before: Place) {
-        let what = format!("`{}` is defined twice", name.text);
+        let what = say!("`{}` is defined twice", name.text);
         self.rewrite.problems.push(
-            Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(before.0, "defined here first"),
+            Problem::new(&codes::DEFINED_TWICE, name.at.0, what)
+                .related(before.0, say!("defined here first")),
         );
     }
 
@@ -254,21 +255,21 @@ impl<'d> Maker<'d> {
             return self.twice(&p.name, before);
         }
         let at = p.name.at.0;
-        let mut bad = |what: String| self.rewrite.problems.push(Problem::new(&codes::BAD_PARTS, at, what));
+        let mut bad = |what: Said| self.rewrite.problems.push(Problem::new(&codes::BAD_PARTS, at, what));
         if p.max == 0 || p.max > MOST_PARTS {
-            return bad(format!("`{}` holds {} parts: 1 to {MOST_PARTS} are possible", p.name.text, p.max));
+            return bad(say!("`{}` holds {} parts: 1 to {MOST_PARTS} are possible", p.name.text, p.max));
         }
         if p.init.len() > p.max as usize {
-            bad(format!("`{}` begins with {} parts but holds {}", p.name.text, p.init.len(), p.max));
+            bad(say!("`{}` begins with {} parts but holds {}", p.name.text, p.init.len(), p.max));
         }
         // After its attributes, a part on a track may give its position.
         let (least, most) = (p.attributes.len(), p.attributes.len() + usize::from(p.length.is_some()));
         if p.init.iter().any(|part| part.len() < least || part.len() > most) {
-            let track = if most > least { ", and perhaps its position" } else { "" };
-            bad(format!("each part of `{}` has {least} attribute(s){track}", p.name.text));
+            let track = if most > least { say!(", and perhaps its position") } else { Said::default() };
+            bad(say!("each part of `{}` has {least} attribute(s){track}", p.name.text));
         }
         if let Some(a) = p.attributes.iter().find(|a| matches!(a.ty, Type::String(_) | Type::Fb(_))) {
-            return bad(format!("a part cannot carry a {}", a.ty));
+            return bad(say!("a part cannot carry a {}", a.ty));
         }
         let table = Table { parts: p };
         self.vars.extend(table.declare());
@@ -293,10 +294,10 @@ impl<'d> Maker<'d> {
         let name = &*r.state.text;
         let body = if let Some(t) = self.rewrite.tables.get(name) {
             let Some(length) = t.parts.length.clone() else {
-                let what = format!("the parts of `{name}` have no positions");
+                let what = say!("the parts of `{name}` have no positions");
                 self.rewrite.problems.push(
                     Problem::new(&codes::BAD_RATE, r.state.at.0, what)
-                        .help("give the parts a `length` to move along"),
+                        .help(say!("give the parts a `length` to move along")),
                 );
                 return;
             };
@@ -314,7 +315,7 @@ impl<'d> Maker<'d> {
                 Some(Type::Real) => STEP_REAL,
                 Some(Type::Lreal) => STEP_LREAL,
                 Some(_) | None => {
-                    let what = format!("`{name}` is no state of type REAL or LREAL, nor a track");
+                    let what = say!("`{name}` is no state of type REAL or LREAL, nor a track");
                     self.rewrite.problems.push(Problem::new(&codes::BAD_RATE, r.state.at.0, what));
                     return;
                 }
@@ -337,15 +338,15 @@ impl<'d> Maker<'d> {
     fn drive(&mut self, d: &'d g7_model::Drive) {
         let name = &d.input;
         if let Some(first) = self.driven.insert(&name.text, name.at) {
-            let what = format!("input `{}` is driven twice", name.text);
-            self.rewrite
-                .problems
-                .push(Problem::new(&codes::BAD_DRIVE, name.at.0, what).related(first.0, "driven here first"));
+            let what = say!("input `{}` is driven twice", name.text);
+            self.rewrite.problems.push(
+                Problem::new(&codes::BAD_DRIVE, name.at.0, what).related(first.0, say!("driven here first")),
+            );
             return;
         }
         let input = self.unit.vars.iter().find(|v| v.class == VarClass::Input && *v.name == *name.text);
         let Some(input) = input else {
-            let what = format!("`{}` is no input of the charts", name.text);
+            let what = say!("`{}` is no input of the charts", name.text);
             self.rewrite.problems.push(Problem::new(&codes::BAD_DRIVE, name.at.0, what));
             return;
         };

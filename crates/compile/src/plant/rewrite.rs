@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::{
-    Arg, Block, Expr, ExprKind, Literal, Name, Path, Place, Problem, Stmt, StmtKind, Type, VarDecl, VarKind,
-    codes,
+    Arg, Block, Expr, ExprKind, Literal, Name, Path, Place, Problem, Said, Stmt, StmtKind, Type, VarDecl,
+    VarKind, codes, say,
 };
 
 use super::build::At;
@@ -57,7 +57,7 @@ fn repeats(e: &Expr) -> bool {
 }
 
 impl Rewrite<'_> {
-    fn report(&mut self, code: &'static codes::Code, at: Place, what: String) -> Expr {
+    fn report(&mut self, code: &'static codes::Code, at: Place, what: Said) -> Expr {
         self.problems.push(Problem::new(code, at.0, what));
         At(at).expr(ExprKind::Bad)
     }
@@ -112,10 +112,10 @@ impl Rewrite<'_> {
             ["last", column] if t.has(column) => t.last(at, column),
             _ => {
                 let known: Vec<&str> = t.attributes().map(|(n, _)| n).collect();
-                let what = format!("parts `{table}` have no `{}`", rest.join("."));
-                self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(format!(
+                let what = say!("parts `{table}` have no `{}`", rest.join("."));
+                self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(say!(
                     "there are count, empty, full, lost, first.… and last.… with {}",
-                    if known.is_empty() { "position".to_owned() } else { known.join(", ") }
+                    Said::foreign(if known.is_empty() { "position".to_owned() } else { known.join(", ") })
                 )));
                 at.expr(ExprKind::Bad)
             }
@@ -136,10 +136,10 @@ impl Rewrite<'_> {
         if repeats(&bound) {
             return bound;
         }
-        let what = "this is too much, or too uncertain, for the end of a range".to_owned();
+        let what = say!("this is too much, or too uncertain, for the end of a range");
         self.problems.push(
             Problem::new(&codes::BAD_PARTS, e.at.0, what)
-                .help("compute it in an `each` block and keep it in a state"),
+                .help(say!("compute it in an `each` block and keep it in a state")),
         );
         At(e.at).expr(ExprKind::Bad)
     }
@@ -151,10 +151,10 @@ impl Rewrite<'_> {
         let before = self.spent <= MOST;
         self.spent = self.spent.saturating_add(size);
         if before && self.spent > MOST {
-            let what = "the plant does more with its parts than can be run".to_owned();
+            let what = say!("the plant does more with its parts than can be run");
             self.problems.push(
                 Problem::new(&codes::BAD_PARTS, at.0.0, what)
-                    .help("give the parts fewer places, or look at them less often"),
+                    .help(say!("give the parts fewer places, or look at them less often")),
             );
         }
         self.spent <= MOST
@@ -174,7 +174,7 @@ impl Rewrite<'_> {
                 Some(range) if t.is_track() && what == "at" => t.any(at, &range),
                 Some(range) if t.is_track() && t.has(what) => t.seen(at, what, &range),
                 _ => {
-                    let what = format!("`{table}.{what}(…)` is nothing that parts can tell");
+                    let what = say!("`{table}.{what}(…)` is nothing that parts can tell");
                     self.report(&codes::UNKNOWN_PART_MEMBER, at.0, what)
                 }
             };
@@ -199,7 +199,7 @@ impl Rewrite<'_> {
             (Some(a), Some(b), None) => {
                 use g7_model::BinaryOp::{Add, Mul, Sub};
                 if !repeats(&a) {
-                    let what = "this is too much, or too uncertain, for a bound of chance".into();
+                    let what = say!("this is too much, or too uncertain, for a bound of chance");
                     return self.report(&codes::BAD_PARTS, a.at, what);
                 }
                 let width = at.binary(Sub, b, a.clone());
@@ -208,7 +208,7 @@ impl Rewrite<'_> {
             _ => self.report(
                 &codes::BAD_PARTS,
                 at.0,
-                "`random` takes no argument, or the least and the largest value".into(),
+                say!("`random` takes no argument, or the least and the largest value"),
             ),
         }
     }
@@ -239,7 +239,7 @@ impl Rewrite<'_> {
                 };
                 out.extend(init.clone().or(first).map(|value| at.assign(&hidden, value)));
                 if self.locals.insert(name.text.clone(), hidden).is_some() {
-                    let what = format!("`{}` is defined twice", name.text);
+                    let what = say!("`{}` is defined twice", name.text);
                     self.problems.push(Problem::new(&codes::DEFINED_TWICE, name.at.0, what));
                 }
             }
@@ -329,8 +329,8 @@ impl Rewrite<'_> {
             _ => None,
         };
         if done.is_none() {
-            let what = format!("`{table}.{what}` with {count} argument(s) is nothing that parts can do");
-            self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(format!(
+            let what = say!("`{table}.{what}` with {count} argument(s) is nothing that parts can do");
+            self.problems.push(Problem::new(&codes::UNKNOWN_PART_MEMBER, at.0.0, what).help(say!(
                 "`{table}.enter` takes {wanted} value(s); `leave`, `leave_last` and `clear` take none; \
                  `take` a range of a track"
             )));

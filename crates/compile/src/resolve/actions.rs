@@ -3,7 +3,7 @@
 use g7_model::{
     Action as WrittenAction, ActionKind as Written, Chart as WrittenChart, Expr as WrittenExpr,
     ExprKind as Form, Name, Order, Path, Problem, Qualifier, Situation as WrittenSituation, Span,
-    Target as WrittenTarget, Transition as WrittenTransition, Type, codes,
+    Target as WrittenTarget, Transition as WrittenTransition, Type, codes, say,
 };
 
 use super::refer::Ref;
@@ -68,7 +68,8 @@ impl Resolver<'_, '_> {
         let receptivity = self.receptivity(&t.receptivity);
         let on_clearing = t.on_clearing.as_ref().map(|b| self.block(b, "")).unwrap_or_default();
         if t.priority == Some(0) {
-            let problem = Problem::new(&codes::OUT_OF_RANGE, t.at.0, "priorities start at 1, the first");
+            let problem =
+                Problem::new(&codes::OUT_OF_RANGE, t.at.0, say!("priorities start at 1, the first"));
             self.problems.push(problem);
         }
         Some(Transition {
@@ -103,11 +104,11 @@ impl Resolver<'_, '_> {
         let Some(section) = section else { return self.condition(e) };
         let at = e.at.0;
         if let Some(first) = self.section_uses.get(&section).copied() {
-            let what = "this transition section stands at two transitions";
+            let what = say!("this transition section stands at two transitions");
             return self.report(
                 Problem::new(&codes::SECTION_SHARED, at, what)
-                    .related(first, "it stands here first")
-                    .help("read its output in an expression, or write a section for each"),
+                    .related(first, say!("it stands here first"))
+                    .help(say!("read its output in an expression, or write a section for each")),
             );
         }
         self.section_uses.insert(section, at);
@@ -171,7 +172,7 @@ impl Resolver<'_, '_> {
             WrittenTarget::Path(p) => self.governed(p)?,
             WrittenTarget::Direct(text, place) => {
                 let Ref::Var(v) = self.refer_direct(text, place.0)? else {
-                    let what = "the state of a step cannot be assigned";
+                    let what = say!("the state of a step cannot be assigned");
                     return self.report(Problem::new(&codes::NOT_WRITABLE, place.0, what));
                 };
                 self.boolean_target(v, place.0)?
@@ -205,16 +206,16 @@ impl Resolver<'_, '_> {
         match self.refer(&p.names)? {
             Ref::Var(v) => self.boolean_target(v, at),
             Ref::Member(..) => {
-                let what = format!("`{}` is part of a function block; an action needs a variable", p.text());
+                let what = say!("`{}` is part of a function block; an action needs a variable", p.text());
                 self.report(
                     Problem::new(&codes::WRONG_KIND, at, what)
-                        .help("assign it: `N member := TRUE`, or call the block"),
+                        .help(say!("assign it: `N member := TRUE`, or call the block")),
                 )
             }
             Ref::Active(_) | Ref::Time(..) => {
-                let what = "the state of a step cannot be assigned";
+                let what = say!("the state of a step cannot be assigned");
                 let problem = Problem::new(&codes::NOT_WRITABLE, at, what);
-                self.report(problem.help("transitions and forcing orders change it"))
+                self.report(problem.help(say!("transitions and forcing orders change it")))
             }
         }
     }
@@ -223,13 +224,13 @@ impl Resolver<'_, '_> {
         let var = self.var(v)?;
         let (class, ty, name, declared) = (var.class, var.ty, var.name.clone(), var.at);
         if ty != Type::Bool {
-            let what = format!("`{name}` is {ty}; without an assignment an action needs a BOOL");
-            let problem = Problem::new(&codes::WRONG_TYPE, at, what).related(declared, "declared here");
-            return self.report(problem.help(format!("assign a value: `{name} := …`")));
+            let what = say!("`{name}` is {ty}; without an assignment an action needs a BOOL");
+            let problem = Problem::new(&codes::WRONG_TYPE, at, what).related(declared, say!("declared here"));
+            return self.report(problem.help(say!("assign a value: `{name} := …`")));
         }
         self.may_write(v, class, at)?;
         if class == VarClass::Local {
-            let what = format!("`{name}` ends with its block; an action needs a variable of the chart");
+            let what = say!("`{name}` ends with its block; an action needs a variable of the chart");
             return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
         }
         Some(Governed::Var(v))
@@ -247,11 +248,11 @@ impl Resolver<'_, '_> {
                 let chart = self.chart_named(name)?;
                 let (role, declared) = self.unit.charts.get(chart.index()).map(|c| (c.role.clone(), c.at))?;
                 if role != ChartRole::Task {
-                    let what = format!("`{}` is not a task", name.text);
+                    let what = say!("`{}` is not a task", name.text);
                     return self.report(
                         Problem::new(&codes::WRONG_KIND, name.at.0, what)
-                            .related(declared, "declared here")
-                            .help(format!("a task is written `task {} {{ … }}`", name.text)),
+                            .related(declared, say!("declared here"))
+                            .help(say!("a task is written `task {} {{ … }}`", name.text)),
                     );
                 }
                 if let Some(s) = self.unit.steps.get_mut(step.index()) {
@@ -278,7 +279,7 @@ impl Resolver<'_, '_> {
             return Some(ActionKind::MaskChart(chart));
         }
         let Ref::Var(v) = self.refer(std::slice::from_ref(name))? else {
-            let what = format!("`{}` is no chart and no output", name.text);
+            let what = say!("`{}` is no chart and no output", name.text);
             return self.report(Problem::new(&codes::WRONG_KIND, name.at.0, what));
         };
         match self.boolean_target(v, name.at.0)? {

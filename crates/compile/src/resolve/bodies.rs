@@ -1,8 +1,8 @@
 //! Named actions, PRE and POST, transition sections and functions.
 
 use g7_model::{
-    Body as WrittenBody, ChartItem, Document, Function as WrittenFunction, Item, NamedAction, Problem,
-    Section as WrittenSection, Span, Type, codes,
+    Body as WrittenBody, ChartItem, Document, Function as WrittenFunction, Item, NamedAction, Problem, Said,
+    Section as WrittenSection, Span, Type, codes, say,
 };
 
 use super::resolver::{Frame, Resolver, Role};
@@ -38,19 +38,19 @@ impl<'d> Resolver<'_, 'd> {
         let name = &function.name.text;
         let mut params = Vec::new();
         for p in &function.params {
-            self.plain_type(p.ty, p.name.at.0, "an input");
+            self.plain_type(p.ty, p.name.at.0, say!("an input"));
             let qualified = format!("{name}.{}", p.name.text).into();
             params.push(self.add_var(qualified, VarClass::Local, p.ty, p.name.at.0));
         }
-        self.plain_type(function.result, at, "the result");
+        self.plain_type(function.result, at, say!("the result"));
         let result = self.add_var(name.clone(), VarClass::Local, function.result, at);
         self.scopes.params.push(function.params.iter().map(|p| &*p.name.text).collect());
         self.unit.functions.push(Function { name: name.clone(), params, result, statements: Vec::new(), at });
     }
 
-    fn plain_type(&mut self, ty: Type, at: Span, what: &str) {
+    fn plain_type(&mut self, ty: Type, at: Span, what: Said) {
         if let Type::Fb(kind) = ty {
-            let what = format!("{what} of a function cannot be a {}", kind.name());
+            let what = say!("{what} of a function cannot be a {}", kind);
             self.problems.push(Problem::new(&codes::BAD_DECLARATION, at, what));
         } else {
             let _ = self.fitting_string(ty, at);
@@ -167,9 +167,9 @@ impl<'d> Resolver<'_, 'd> {
         f.statements.clear();
         let (name, declared) = (f.name.clone(), f.at);
         self.problems.push(
-            Problem::new(&codes::RECURSION, at, format!("`{name}` is called while it is being computed"))
-                .related(declared, "declared here")
-                .help("a function cannot call itself, nor one that calls it; use a loop"),
+            Problem::new(&codes::RECURSION, at, say!("`{name}` is called while it is being computed"))
+                .related(declared, say!("declared here"))
+                .help(say!("a function cannot call itself, nor one that calls it; use a loop")),
         );
     }
 
@@ -181,18 +181,18 @@ impl<'d> Resolver<'_, 'd> {
             }
             let read = self.unit.transitions.iter().find_map(|t| read_at(&t.receptivity, s.output));
             if let Some(at) = read {
-                let what = format!("`{}` stays FALSE here: no transition runs this section", s.name);
+                let what = say!("`{}` stays FALSE here: no transition runs this section", s.name);
                 self.problems.push(
                     Problem::new(&codes::SECTION_READ, at, what)
-                        .related(s.at, "the section is declared here")
-                        .help("a section is the whole receptivity of one transition; write a `function`, or its expression"),
+                        .related(s.at, say!("the section is declared here"))
+                        .help(say!("a section is the whole receptivity of one transition; write a `function`, or its expression")),
                 );
                 continue;
             }
-            let what = format!("no transition uses the section `{}`, so it never runs", s.name);
+            let what = say!("no transition uses the section `{}`, so it never runs", s.name);
             self.problems.push(
                 Problem::new(&codes::SECTION_UNUSED, s.at, what)
-                    .help("name it as the receptivity of one transition: `when …`"),
+                    .help(say!("name it as the receptivity of one transition: `when …`")),
             );
         }
     }

@@ -1,6 +1,6 @@
 //! Calls in expressions: functions of the document, standard functions, conversions.
 
-use g7_model::{Arg, Name, Nanos, Path, Problem, Span, StandardFunction, Type, codes};
+use g7_model::{Arg, Name, Nanos, Path, Problem, Said, Span, StandardFunction, Type, codes, say};
 
 use super::constant;
 use super::resolver::{Resolver, Role, nearest};
@@ -51,24 +51,23 @@ impl Resolver<'_, '_> {
         };
         let problem = match known {
             Some(Entity::Var(v)) if self.var(v).is_some_and(|v| matches!(v.ty, Type::Fb(_))) => {
-                let what = format!("the function block `{text}` is no part of an expression");
+                let what = say!("the function block `{text}` is no part of an expression");
                 Problem::new(&codes::WRONG_KIND, at, what)
-                    .help(format!("call it in an action or PRE section, then read `{text}.Q`"))
+                    .help(say!("call it in an action or PRE section, then read `{text}.Q`"))
             }
-            Some(_) => Problem::new(&codes::WRONG_KIND, at, format!("`{text}` is not a function")),
+            Some(_) => Problem::new(&codes::WRONG_KIND, at, say!("`{text}` is not a function")),
             None => {
-                let problem =
-                    Problem::new(&codes::UNKNOWN_NAME, at, format!("there is no function `{text}`"));
+                let problem = Problem::new(&codes::UNKNOWN_NAME, at, say!("there is no function `{text}`"));
                 let own = self.unit.functions.iter().map(|f| &*f.name);
                 match nearest(&text, own.chain(StandardFunction::ALL.into_iter().map(|f| f.row().name))) {
                     _ if text.eq_ignore_ascii_case("R_EDGE") => {
-                        problem.help("an edge is written `rise(a)` or `↑a`")
+                        problem.help(say!("an edge is written `rise(a)` or `↑a`"))
                     }
                     _ if text.eq_ignore_ascii_case("F_EDGE") => {
-                        problem.help("an edge is written `fall(a)` or `↓a`")
+                        problem.help(say!("an edge is written `fall(a)` or `↓a`"))
                     }
                     Some(n) => problem.meant(n),
-                    None => problem.help("declare it: `function f(x : INT) : INT { … }`"),
+                    None => problem.help(say!("declare it: `function f(x : INT) : INT {{ … }}`")),
                 }
             }
         };
@@ -96,9 +95,9 @@ impl Resolver<'_, '_> {
                 Some(arg) => values.push(self.value(&arg.value, *ty)),
                 None => {
                     let missing = names.get(k).map_or("", |n| n);
-                    let what = format!("`{}` needs its input `{missing}`", name.text);
+                    let what = say!("`{}` needs its input `{missing}`", name.text);
                     let problem = Problem::new(&codes::WRONG_ARGUMENTS, at, what);
-                    self.problems.push(problem.related(declared, "declared here"));
+                    self.problems.push(problem.related(declared, say!("declared here")));
                     values.push(None);
                 }
             }
@@ -120,7 +119,7 @@ impl Resolver<'_, '_> {
         for (k, arg) in args.iter().enumerate() {
             let at = arg.name.as_ref().map_or(arg.value.at.0, |n| n.at.0);
             if arg.output {
-                let what = format!("`{}` has one result and no outputs", name.text);
+                let what = say!("`{}` has one result and no outputs", name.text);
                 return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
             }
             let k = match &arg.name {
@@ -128,21 +127,21 @@ impl Resolver<'_, '_> {
                 Some(n) => match place(&n.text) {
                     Some(k) => k,
                     None => {
-                        let what = format!("`{}` has no input `{}`", name.text, n.text);
+                        let what = say!("`{}` has no input `{}`", name.text, n.text);
                         return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
                     }
                 },
             };
             if k >= most {
-                let what = format!("`{}` takes {}, here are {}", name.text, counted(most), args.len());
+                let what = say!("`{}` takes {}, here are {}", name.text, counted(most), args.len());
                 return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
             }
             if ordered.len() <= k {
                 ordered.resize(k + 1, None);
             }
             if let Some(first) = ordered.get_mut(k).and_then(|slot| slot.replace(arg)) {
-                let problem = Problem::new(&codes::WRONG_ARGUMENTS, at, "given twice in one call")
-                    .related(first.value.at.0, "given here first");
+                let problem = Problem::new(&codes::WRONG_ARGUMENTS, at, say!("given twice in one call"))
+                    .related(first.value.at.0, say!("given here first"));
                 return self.report(problem);
             }
         }
@@ -163,7 +162,7 @@ impl Resolver<'_, '_> {
             return None;
         };
         let Some(arg) = ordered.first().copied().flatten() else {
-            let what = format!("`{}` takes one value", name.text);
+            let what = say!("`{}` takes one value", name.text);
             return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
         };
         let want = if matches!(from, Type::String(_)) { Type::String(g7_engine::TEXT) } else { from };
@@ -172,7 +171,7 @@ impl Resolver<'_, '_> {
             (Type::Time, _) if to.is_number() => self.time_as_number(e, to, at),
             (_, Type::Time) if from.is_number() => self.number_as_time(e, at),
             (Type::Time, Type::Bool) | (Type::Bool | Type::String(_), Type::Time) => {
-                let what = format!("there is no conversion from {from} to {to}");
+                let what = say!("there is no conversion from {from} to {to}");
                 self.report(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what))
             }
             _ => self.convert(e, to, at),
@@ -238,10 +237,10 @@ fn conversion(name: &str) -> Option<(Type, Type)> {
     Some((elementary(from)?, elementary(to)?))
 }
 
-fn counted(n: usize) -> String {
+fn counted(n: usize) -> Said {
     match n {
-        0 => "no inputs".to_owned(),
-        1 => "one input".to_owned(),
-        _ => format!("{n} inputs"),
+        0 => say!("no inputs"),
+        1 => say!("one input"),
+        _ => say!("{n} inputs"),
     }
 }

@@ -2,7 +2,7 @@
 
 use g7_model::{
     Action, ActionKind as Written, Chart as WrittenChart, ChartKind, Name, Order, Problem, Span, StepKind,
-    codes,
+    codes, say,
 };
 
 use super::resolver::Resolver;
@@ -101,9 +101,9 @@ impl<'d> Resolver<'_, 'd> {
         }
         let before = self.scopes.name_step(chart, &name.text, id);
         if let Some(first) = before.and_then(|s| self.unit.steps.get(s.index())) {
-            let what = format!("step `{}` is defined twice", name.text);
+            let what = say!("step `{}` is defined twice", name.text);
             let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
-            self.problems.push(problem.related(first.at, "defined here first"));
+            self.problems.push(problem.related(first.at, say!("defined here first")));
         }
     }
 
@@ -115,12 +115,11 @@ impl<'d> Resolver<'_, 'd> {
             *slot = Some(id);
             return;
         };
-        let word = if entry { "entry" } else { "exit" };
-        let what = format!("`{}` has two {word} steps", c.name);
+        let word = if entry { say!("entry") } else { say!("exit") };
+        let what = say!("`{}` has two {word} steps", c.name);
         let at = self.unit.steps.get(first.index()).map(|s| s.at).unwrap_or_default();
-        self.problems.push(
-            Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(at, format!("the {word} step")),
-        );
+        self.problems
+            .push(Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(at, say!("the {word} step")));
     }
 
     /// Links macro-steps to their expansions and enclosing steps to their charts.
@@ -146,11 +145,11 @@ impl<'d> Resolver<'_, 'd> {
         let declared = chart.at;
         match chart.role {
             ChartRole::Chart | ChartRole::Task => {
-                let what = format!("`{}` is not the expansion of a macro-step", name.text);
+                let what = say!("`{}` is not the expansion of a macro-step", name.text);
                 self.problems.push(
                     Problem::new(&codes::WRONG_KIND, name.at.0, what)
-                        .related(declared, "declared here")
-                        .help(format!("an expansion is written `macrochart {} {{ … }}`", name.text)),
+                        .related(declared, say!("declared here"))
+                        .help(say!("an expansion is written `macrochart {} {{ … }}`", name.text)),
                 );
                 return;
             }
@@ -160,11 +159,11 @@ impl<'d> Resolver<'_, 'd> {
                     return;
                 }
                 let at = self.unit.steps.get(first.index()).map(|s| s.at).unwrap_or_default();
-                let what = format!("`{}` is the expansion of two macro-steps", name.text);
+                let what = say!("`{}` is the expansion of two macro-steps", name.text);
                 self.problems.push(
                     Problem::new(&codes::EXPANSION_SHARED, name.at.0, what)
-                        .related(at, "this macro-step has it already")
-                        .help("give each macro-step an expansion of its own, or make it a task"),
+                        .related(at, say!("this macro-step has it already"))
+                        .help(say!("give each macro-step an expansion of its own, or make it a task")),
                 );
                 return;
             }
@@ -188,25 +187,26 @@ impl<'d> Resolver<'_, 'd> {
         let enclosing = matches!(s.sort, StepSort::Enclosing(_));
         let own = s.chart;
         if !enclosing {
-            let what = format!("step `{}` is not an enclosing step", s.name);
-            let help = format!("write `enclosing step {}`", s.name);
+            let what = say!("step `{}` is not an enclosing step", s.name);
+            let help = say!("write `enclosing step {}`", s.name);
             self.problems.push(Problem::new(&codes::NOT_HERE, name.at.0, what).help(help));
             return;
         }
         let Some(c) = self.chart_named(name) else { return };
         let Some(chart) = self.unit.charts.get(c.index()) else { return };
         if chart.role != ChartRole::Chart {
-            let what = format!("`{}` is not a chart that can be enclosed", name.text);
+            let what = say!("`{}` is not a chart that can be enclosed", name.text);
             let problem =
-                Problem::new(&codes::WRONG_KIND, name.at.0, what).related(chart.at, "declared here");
+                Problem::new(&codes::WRONG_KIND, name.at.0, what).related(chart.at, say!("declared here"));
             self.problems.push(problem);
             return;
         }
         if let Some(first) = chart.enclosed_by {
             let at = self.unit.steps.get(first.index()).map(|s| s.at).unwrap_or_default();
-            let what = format!("`{}` is enclosed twice", name.text);
+            let what = say!("`{}` is enclosed twice", name.text);
             self.problems.push(
-                Problem::new(&codes::ENCLOSED_TWICE, name.at.0, what).related(at, "enclosed by this step"),
+                Problem::new(&codes::ENCLOSED_TWICE, name.at.0, what)
+                    .related(at, say!("enclosed by this step")),
             );
             return;
         }
@@ -224,7 +224,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     fn nested_in_itself(&mut self, at: Span, chart: &str) {
-        let what = format!("`{chart}` would contain itself");
+        let what = say!("`{chart}` would contain itself");
         self.problems.push(Problem::new(&codes::NESTED_IN_ITSELF, at, what));
     }
 
@@ -327,7 +327,7 @@ impl<'d> Resolver<'_, 'd> {
         if circle {
             self.nested_in_itself(at, &name);
         } else {
-            let what = format!("`{name}` lies more than {DEEPEST} charts deep");
+            let what = say!("`{name}` lies more than {DEEPEST} charts deep");
             self.problems.push(Problem::new(&codes::NESTED_TOO_DEEPLY, at, what));
         }
     }

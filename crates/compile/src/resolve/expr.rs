@@ -4,7 +4,9 @@
 //! place needs. A hint goes down only for functions whose result depends on the place (TRUNC, SQRT
 //! of a literal).
 
-use g7_model::{Arg, Expr as Written, ExprKind as Form, Literal, Path, Problem, Span, Type, UnaryOp, codes};
+use g7_model::{
+    Arg, Expr as Written, ExprKind as Form, Literal, Path, Problem, Said, Span, Type, UnaryOp, codes, say,
+};
 
 use super::constant;
 use super::operator;
@@ -87,7 +89,7 @@ impl Resolver<'_, '_> {
             Literal::Real(text, ty) => match text.parse::<f64>() {
                 Ok(x) if x.is_finite() => self.typed_literal(Typed::untyped(Value::Real(x), at), *ty),
                 _ => {
-                    let what = format!("{text} does not fit into LREAL");
+                    let what = say!("{} does not fit into LREAL", Said::foreign(text.as_ref()));
                     self.report(Problem::new(&codes::OUT_OF_RANGE, at, what))
                 }
             },
@@ -96,7 +98,7 @@ impl Resolver<'_, '_> {
             }
             Literal::Str(s) => {
                 let Some(len) = u16::try_from(s.len()).ok().filter(|n| *n <= g7_engine::TEXT) else {
-                    let what = format!("a text has at most {} bytes", g7_engine::TEXT);
+                    let what = say!("a text has at most {} bytes", g7_engine::TEXT);
                     return self.report(Problem::new(&codes::OUT_OF_RANGE, at, what));
                 };
                 Some(Typed::constant(Value::Str(s.clone()), Type::String(len.max(1)), at))
@@ -125,11 +127,11 @@ impl Resolver<'_, '_> {
             return Some(());
         }
         let declared = self.var(v)?.at;
-        let what = format!("`{}` has no value yet", name.text);
+        let what = say!("`{}` has no value yet", name.text);
         self.report(
             Problem::new(&codes::NOT_CONSTANT, name.at.0, what)
-                .related(declared, "declared here")
-                .help("constants get their values in the order of the text"),
+                .related(declared, say!("declared here"))
+                .help(say!("constants get their values in the order of the text")),
         )
     }
 
@@ -165,7 +167,7 @@ impl Resolver<'_, '_> {
             UnaryOp::Not => self.complement(operand, at),
             UnaryOp::Neg => self.minus(operand, hint, at),
             UnaryOp::Rise | UnaryOp::Fall => {
-                let allowed = self.allow_watch("an edge", at);
+                let allowed = self.allow_watch(say!("an edge"), at);
                 let e = self.watched(operand)?;
                 allowed?;
                 let e = Box::new(e);
@@ -197,10 +199,10 @@ impl Resolver<'_, '_> {
         }
         let signed = ty.bounds().is_none_or(|(least, _)| least < 0);
         if !(ty.is_number() || ty == Type::Time) || !signed {
-            let problem = Problem::new(&codes::WRONG_OPERANDS, at, format!("{ty} has no minus sign"));
+            let problem = Problem::new(&codes::WRONG_OPERANDS, at, say!("{ty} has no minus sign"));
             return self.report(match ty {
-                Type::Bool => problem.help("the complement is written `not`"),
-                _ if ty.is_number() => problem.help(format!("convert it first, as in `-{ty}_TO_DINT(…)`")),
+                Type::Bool => problem.help(say!("the complement is written `not`")),
+                _ if ty.is_number() => problem.help(say!("convert it first, as in `-{ty}_TO_DINT(…)`")),
                 _ => problem,
             });
         }
@@ -215,7 +217,7 @@ impl Resolver<'_, '_> {
     }
 
     fn timer(&mut self, t1: &Written, e: &Written, t2: Option<&Written>, at: Span) -> Option<Typed> {
-        let allowed = self.allow_watch("a delay", at);
+        let allowed = self.allow_watch(say!("a delay"), at);
         let t1 = self.within_watch(|r| r.value(t1, Type::Time));
         let e = self.watched(e);
         let t2 = match t2 {
@@ -240,16 +242,16 @@ impl Resolver<'_, '_> {
     }
 
     /// Edges and delays need a memory of the scan before, which some code does not have.
-    fn allow_watch(&mut self, what: &str, at: Span) -> Option<()> {
+    fn allow_watch(&mut self, what: Said, at: Span) -> Option<()> {
         let place = match self.frame.role {
             Role::Code | Role::Section(_) => return Some(()),
-            Role::Function(_) => "a function",
-            Role::Query => "a test or a question",
-            Role::Constant => "a constant",
+            Role::Function(_) => say!("a function"),
+            Role::Query => say!("a test or a question"),
+            Role::Constant => say!("a constant"),
         };
-        let problem = Problem::new(&codes::NOT_HERE, at, format!("{what} cannot stand in {place}"));
+        let problem = Problem::new(&codes::NOT_HERE, at, say!("{what} cannot stand in {place}"));
         self.report(match self.frame.role {
-            Role::Function(_) => problem.help("a function remembers nothing; pass the value in"),
+            Role::Function(_) => problem.help(say!("a function remembers nothing; pass the value in")),
             _ => problem,
         })
     }

@@ -1,6 +1,6 @@
 //! Calls of standard function blocks.
 
-use g7_model::{Arg, ExprKind as Form, FbKind, Name, Problem, Span, Type, codes};
+use g7_model::{Arg, ExprKind as Form, FbKind, Name, Problem, Said, Span, Type, codes, say};
 
 use super::resolver::{Resolver, Role, nearest};
 use crate::ir::{Expr, StmtKind, Target, VarId};
@@ -38,8 +38,9 @@ impl Resolver<'_, '_> {
             let place = arg.name.as_ref().map_or(arg.value.at.0, |n| n.at.0);
             match given.get_mut(usize::from(m)) {
                 Some(Some(first)) => {
-                    let problem = Problem::new(&codes::WRONG_ARGUMENTS, place, "given twice in one call")
-                        .related(*first, "given here first");
+                    let problem =
+                        Problem::new(&codes::WRONG_ARGUMENTS, place, say!("given twice in one call"))
+                            .related(*first, say!("given here first"));
                     self.problems.push(problem);
                     complete = false;
                     continue;
@@ -68,14 +69,14 @@ impl Resolver<'_, '_> {
     fn may_call(&mut self, name: &Name) -> Option<()> {
         let place = match self.frame.role {
             Role::Code => return Some(()),
-            Role::Function(_) => "a function",
-            Role::Section(_) => "a transition section",
-            Role::Query | Role::Constant => "an expression",
+            Role::Function(_) => say!("a function"),
+            Role::Section(_) => say!("a transition section"),
+            Role::Query | Role::Constant => say!("an expression"),
         };
-        let what = format!("the function block `{}` cannot be called in {place}", name.text);
+        let what = say!("the function block `{}` cannot be called in {place}", name.text);
         self.report(
             Problem::new(&codes::NOT_HERE, name.at.0, what)
-                .help("call it in an action or in a PRE section and read its outputs here"),
+                .help(say!("call it in an action or in a PRE section and read its outputs here")),
         )
     }
 
@@ -86,19 +87,19 @@ impl Resolver<'_, '_> {
                 return u8::try_from(k).ok();
             }
             let inputs: Vec<&str> = members.iter().filter(|m| m.2).map(|m| m.0).collect();
-            let what = format!("{} takes {} inputs: {}", kind.name(), inputs.len(), inputs.join(", "));
+            let what = say!("{} takes {} inputs: {}", kind, inputs.len(), Said::foreign(inputs.join(", ")));
             return self.report(Problem::new(&codes::WRONG_ARGUMENTS, arg.value.at.0, what));
         };
-        let side = if arg.output { "output" } else { "input" };
+        let side = if arg.output { say!("output") } else { say!("input") };
         let found = member(kind, &name.text)
             .filter(|m| members.get(usize::from(*m)).is_some_and(|m| m.2 != arg.output));
         if found.is_none() {
             let all: Vec<&str> = members.iter().filter(|m| m.2 != arg.output).map(|m| m.0).collect();
-            let what = format!("{} has no {side} `{}`", kind.name(), name.text);
+            let what = say!("{} has no {side} `{}`", kind, name.text);
             let near = nearest(&name.text, all.iter().copied());
             let help = match near {
-                Some(n) => format!("did you mean `{n}`?"),
-                None => format!("its {side}s are {}", all.join(", ")),
+                Some(n) => say!("did you mean `{n}`?"),
+                None => say!("its {side}s are {}", Said::foreign(all.join(", "))),
             };
             self.problems.push(Problem::new(&codes::WRONG_ARGUMENTS, name.at.0, what).help(help));
         }
@@ -110,12 +111,12 @@ impl Resolver<'_, '_> {
         let (target, of) = match &arg.value.kind {
             Form::Path(_) | Form::Direct(_) => self.target(&arg.value)?,
             _ => {
-                let what = "an output needs a variable to go to";
+                let what = say!("an output needs a variable to go to");
                 return self.report(Problem::new(&codes::WRONG_ARGUMENTS, arg.value.at.0, what));
             }
         };
         if of != ty {
-            let what = format!("the output is {ty}, the variable is {of}");
+            let what = say!("the output is {ty}, the variable is {of}");
             return self.report(Problem::new(&codes::WRONG_TYPE, arg.value.at.0, what));
         }
         Some(target)

@@ -36,7 +36,9 @@ mod trace;
 mod types;
 mod vars;
 
-use g7_model::{Chart, ChartItem, Document, Expr as Written, Item, Nanos, Problem, ProfileName, Type, codes};
+use g7_model::{
+    Chart, ChartItem, Document, Expr as Written, Item, Nanos, Problem, ProfileName, Type, codes, say,
+};
 
 use crate::ir::{ChartId, Expr, Unit};
 use resolver::{Frame, Resolver, Role};
@@ -104,19 +106,23 @@ fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
             Item::Cycle(time, at) => {
                 unit.cycle = if cycle.is_none() { *time } else { unit.cycle };
                 if *time <= Nanos::ZERO {
-                    problems.push(Problem::new(&codes::OUT_OF_RANGE, at.0, "a scan takes more than no time"));
+                    problems.push(Problem::new(
+                        &codes::OUT_OF_RANGE,
+                        at.0,
+                        say!("a scan takes more than no time"),
+                    ));
                 }
-                ("the scan time", at.0, cycle.replace(at.0))
+                (say!("the scan time"), at.0, cycle.replace(at.0))
             }
             Item::Target(plc, at) => {
                 unit.target = unit.target.or(Some(*plc));
-                ("the target", at.0, target.replace(at.0))
+                (say!("the target"), at.0, target.replace(at.0))
             }
             _ => continue,
         };
         if let Some(before) = before {
-            let problem = Problem::new(&codes::DEFINED_TWICE, at, format!("{what} is given twice"));
-            problems.push(problem.related(before, "given here first"));
+            let problem = Problem::new(&codes::DEFINED_TWICE, at, say!("{what} is given twice"));
+            problems.push(problem.related(before, say!("given here first")));
         }
     }
     if unit.cycle <= Nanos::ZERO {

@@ -1,6 +1,6 @@
 //! Operators between two typed operands.
 
-use g7_model::{BinaryOp as Sign, Operands, Problem, Span, Type, codes};
+use g7_model::{BinaryOp as Sign, Operands, Problem, Said, Span, Type, codes, say};
 
 use super::constant;
 use super::resolver::Resolver;
@@ -174,11 +174,11 @@ impl Resolver<'_, '_> {
 
     fn wrong_operands<T>(&mut self, sign: Sign, a: &Typed, b: &Typed, at: Span) -> Option<T> {
         let name = |t: &Typed| match t.value() {
-            Some(Value::Real(_)) if t.literal => "a real number".to_owned(),
-            Some(_) if t.literal => "a whole number".to_owned(),
-            _ => t.expr.ty.to_string(),
+            Some(Value::Real(_)) if t.literal => say!("a real number"),
+            Some(_) if t.literal => say!("a whole number"),
+            _ => Said::foreign(t.expr.ty.to_string()),
         };
-        let what = format!("`{}` cannot stand between {} and {}", sign.row().sign, name(a), name(b));
+        let what = say!("`{}` cannot stand between {} and {}", sign.row().sign, name(a), name(b));
         let problem = Problem::new(&codes::WRONG_OPERANDS, at, what);
         self.report(match help(sign, a, b) {
             Some(h) => problem.help(h),
@@ -202,25 +202,23 @@ fn meeting(a: &Typed, b: &Typed) -> Option<Type> {
     }
 }
 
-fn help(sign: Sign, a: &Typed, b: &Typed) -> Option<String> {
+fn help(sign: Sign, a: &Typed, b: &Typed) -> Option<Said> {
     let has = |ty: Type| [a, b].iter().any(|t| !t.literal && t.expr.ty == ty);
     let numbers = [a, b].iter().all(|t| t.literal || t.expr.ty.is_number());
     if has(Type::Time) && (a.literal || b.literal) {
-        return Some("write a duration, as in `5s`".to_owned());
+        return Some(say!("write a duration, as in `5s`"));
     }
     match sign {
-        Sign::Dot if numbers => Some("`·` is AND; a product of numbers is written `*`".to_owned()),
+        Sign::Dot if numbers => Some(say!("`·` is AND; a product of numbers is written `*`")),
         Sign::Or | Sign::Xor | Sign::And if numbers => {
-            Some("it joins conditions; compare each number first".to_owned())
+            Some(say!("it joins conditions; compare each number first"))
         }
-        Sign::Mod if a.expr.ty.is_real() || b.expr.ty.is_real() => {
-            Some("`mod` is for whole numbers".to_owned())
-        }
-        Sign::Div if a.literal && b.expr.ty == Type::Bool => Some("a delay has its unit: `5s/X1`".to_owned()),
+        Sign::Mod if a.expr.ty.is_real() || b.expr.ty.is_real() => Some(say!("`mod` is for whole numbers")),
+        Sign::Div if a.literal && b.expr.ty == Type::Bool => Some(say!("a delay has its unit: `5s/X1`")),
         _ if numbers => {
             let long = if has(Type::Lint) { Type::Lint } else { Type::Ulint };
             let other = if a.expr.ty == long { b.expr.ty } else { a.expr.ty };
-            Some(format!("convert one of them, as in `{long}_TO_{other}(…)`"))
+            Some(say!("convert one of them, as in `{long}_TO_{other}(…)`"))
         }
         _ => None,
     }

@@ -4,7 +4,7 @@
 //! `Chart.variable`, a member of a function block, the activity of a step, the time since its
 //! activation. So a variable called `X12` hides the activity of step 12.
 
-use g7_model::{Name, Problem, ProfileName, Span, Type, codes};
+use g7_model::{Name, Problem, ProfileName, Said, Span, Type, codes, say};
 
 use super::resolver::{Resolver, Role, nearest};
 use super::scopes::{Entity, Home, Homes, normal_address};
@@ -51,7 +51,7 @@ enum Miss {
     /// A step without `.X`.
     BareStep(usize, StepId),
     /// An action, function or chart has no value.
-    NoValue(usize, &'static str),
+    NoValue(usize, Said),
 }
 
 impl Resolver<'_, '_> {
@@ -101,7 +101,7 @@ impl Resolver<'_, '_> {
         }
         match self.scopes.home(self.frame.chart, name) {
             Some(Home::One(_, s) | Home::Several(s, _)) => Err(Miss::BareStep(0, s)),
-            None if self.scopes.chart(name).is_some() => Err(Miss::NoValue(0, "a chart")),
+            None if self.scopes.chart(name).is_some() => Err(Miss::NoValue(0, say!("a chart"))),
             None if step_number(name).is_some() => Err(Miss::Step(0, None)),
             None => Err(Miss::Name(0, None)),
         }
@@ -121,14 +121,16 @@ impl Resolver<'_, '_> {
             Entity::Section(s) => {
                 self.unit.sections.get(s.index()).map(|s| Ref::Var(s.output)).ok_or(Miss::Name(k, None))
             }
-            Entity::Body(_) => Err(Miss::NoValue(k, "an action")),
-            Entity::Function(_) => Err(Miss::NoValue(k, "a function")),
+            Entity::Body(_) => Err(Miss::NoValue(k, say!("an action"))),
+            Entity::Function(_) => Err(Miss::NoValue(k, say!("a function"))),
         }
     }
 
     /// Resolves `names[k..]` in the chart that was named before them.
     fn of_chart(&self, chart: ChartId, names: &[Name], k: usize) -> Result<Ref, Miss> {
-        let Some(name) = names.get(k) else { return Err(Miss::NoValue(k.saturating_sub(1), "a chart")) };
+        let Some(name) = names.get(k) else {
+            return Err(Miss::NoValue(k.saturating_sub(1), say!("a chart")));
+        };
         let entity = self.scopes.of_chart(chart, &name.text);
         if k + 1 < names.len() {
             if let (Some(Entity::Var(v)), Some(member)) = (entity, names.get(k + 1)) {
@@ -236,8 +238,8 @@ impl Resolver<'_, '_> {
                 let step = step_number(text(k)).unwrap_or_default();
                 let home = chart.and_then(|c| self.unit.charts.get(c.index()));
                 let what = match home {
-                    Some(c) => format!("chart `{}` has no step `{step}`", c.name),
-                    None => format!("there is no step `{step}`"),
+                    Some(c) => say!("chart `{}` has no step `{step}`", c.name),
+                    None => say!("there is no step `{step}`"),
                 };
                 Problem::new(&codes::UNKNOWN_STEP, at(k), what)
             }
@@ -246,19 +248,19 @@ impl Resolver<'_, '_> {
             Miss::NoMembers(k, v) => {
                 let (name, ty) = self.var(v).map(|v| (v.name.clone(), v.ty)).unzip();
                 let what = match (name, ty) {
-                    (Some(n), Some(ty)) => format!("`{n}` is a {ty}; it has no member `{}`", text(k)),
-                    _ => format!("there is no member `{}`", text(k)),
+                    (Some(n), Some(ty)) => say!("`{n}` is a {ty}; it has no member `{}`", text(k)),
+                    _ => say!("there is no member `{}`", text(k)),
                 };
                 Problem::new(&codes::UNKNOWN_MEMBER, at(k), what)
             }
             Miss::OfStep(k, s) => self.not_of_step(text(k), at(k), s),
             Miss::BareStep(k, s) => {
                 let path = self.activity_path(s);
-                let what = format!("`{}` is a step, not a value", text(k));
-                Problem::new(&codes::WRONG_KIND, at(k), what).help(format!("its activity is `{path}`"))
+                let what = say!("`{}` is a step, not a value", text(k));
+                Problem::new(&codes::WRONG_KIND, at(k), what).help(say!("its activity is `{path}`"))
             }
-            Miss::NoValue(k, what) => {
-                let what = format!("`{}` is {what}; it has no value", text(k));
+            Miss::NoValue(k, ref what) => {
+                let what = say!("`{}` is {what}; it has no value", text(k));
                 Problem::new(&codes::WRONG_KIND, at(k), what)
             }
         }
@@ -267,15 +269,15 @@ impl Resolver<'_, '_> {
     fn unknown_name(&mut self, name: &str, at: Span, chart: Option<ChartId>) -> Problem {
         let home = chart.and_then(|c| self.unit.charts.get(c.index())).map(|c| c.name.clone());
         let what = match &home {
-            Some(c) => format!("chart `{c}` has no `{name}`"),
-            None => format!("nothing is called `{name}`"),
+            Some(c) => say!("chart `{c}` has no `{name}`"),
+            None => say!("nothing is called `{name}`"),
         };
         let mut problem = Problem::new(&codes::UNKNOWN_NAME, at, what);
         if matches!(name, "True" | "False") {
             return problem.meant(&name.to_ascii_uppercase());
         }
         if let Some(base) = self.overlined(name, chart) {
-            problem.help = Some(format!("write `not {base}`, `{base}'` or `/{base}`"));
+            problem.help = Some(say!("write `not {base}`, `{base}'` or `/{base}`"));
         } else if self.may_guess()
             && let Some(near) = self.guess(name, home.as_deref())
         {
@@ -308,38 +310,38 @@ impl Resolver<'_, '_> {
     }
 
     fn ambiguous(&self, name: &str, at: Span, a: StepId, b: StepId) -> Problem {
-        let what = format!("several charts have the step of `{name}`");
+        let what = say!("several charts have the step of `{name}`");
         let mut problem = Problem::new(&codes::AMBIGUOUS_STEP, at, what);
         for s in [a, b] {
             if let Some(step) = self.unit.steps.get(s.index()) {
                 let chart = self.unit.charts.get(step.chart.index()).map_or("", |c| &*c.name);
-                problem = problem.related(step.at, format!("step `{}` of `{chart}`", step.name));
+                problem = problem.related(step.at, say!("step `{}` of `{chart}`", step.name));
             }
         }
-        problem.help = Some(format!("name the chart, as in `{}`", self.activity_path(a)));
+        problem.help = Some(say!("name the chart, as in `{}`", self.activity_path(a)));
         problem
     }
 
     fn no_member(&self, name: &str, at: Span, instance: VarId) -> Problem {
         let Some((Type::Fb(kind), owner)) = self.var(instance).map(|v| (v.ty, &v.name)) else {
-            return Problem::new(&codes::UNKNOWN_MEMBER, at, format!("there is no member `{name}`"));
+            return Problem::new(&codes::UNKNOWN_MEMBER, at, say!("there is no member `{name}`"));
         };
         let members: Vec<&str> = kind.members().iter().map(|m| m.0).collect();
-        let what = format!("`{owner}` is a {}; it has no member `{name}`", kind.name());
-        Problem::new(&codes::UNKNOWN_MEMBER, at, what).help(format!(
+        let what = say!("`{owner}` is a {}; it has no member `{name}`", kind);
+        Problem::new(&codes::UNKNOWN_MEMBER, at, what).help(say!(
             "a {} has {}",
-            kind.name(),
-            members.join(", ")
+            kind,
+            Said::foreign(members.join(", "))
         ))
     }
 
     fn not_of_step(&self, name: &str, at: Span, step: StepId) -> Problem {
         let step_name = self.unit.steps.get(step.index()).map_or("", |s| &*s.name);
-        let what = format!("step `{step_name}` has no `{name}`");
+        let what = say!("step `{step_name}` has no `{name}`");
         let help = match name {
-            "x" => "its activity is `.X`".to_owned(),
-            "s" => "the time since its activation is `.t`, a TIME".to_owned(),
-            _ => "a step has `.X`, its activity, and `.t`, the time since its activation".to_owned(),
+            "x" => say!("its activity is `.X`"),
+            "s" => say!("the time since its activation is `.t`, a TIME"),
+            _ => say!("a step has `.X`, its activity, and `.t`, the time since its activation"),
         };
         Problem::new(&codes::UNKNOWN_MEMBER, at, what).help(help)
     }
@@ -367,12 +369,12 @@ impl Resolver<'_, '_> {
         if let Some(ty) = super::system::type_of(text) {
             return Some(Ref::Var(self.system(text, ty, at)));
         }
-        let problem = Problem::new(&codes::UNKNOWN_DIRECT, at, format!("nothing is declared at `%{text}`"));
+        let problem = Problem::new(&codes::UNKNOWN_DIRECT, at, say!("nothing is declared at `%{text}`"));
         self.report(match text.as_bytes().first() {
-            Some(b'I') => problem.help(format!("declare it: `input name : BOOL at %{text}`")),
-            Some(b'Q') => problem.help(format!("declare it: `output name : BOOL at %{text}`")),
-            Some(b'M') => problem.help(format!("declare it: `var name : BOOL at %{text}`")),
-            _ => problem.help("the system bits are %S0, %S1, %S21 to %S25, the words %SW20 to %SW25"),
+            Some(b'I') => problem.help(say!("declare it: `input name : BOOL at %{text}`")),
+            Some(b'Q') => problem.help(say!("declare it: `output name : BOOL at %{text}`")),
+            Some(b'M') => problem.help(say!("declare it: `var name : BOOL at %{text}`")),
+            _ => problem.help(say!("the system bits are %S0, %S1, %S21 to %S25, the words %SW20 to %SW25")),
         })
     }
 
@@ -386,10 +388,10 @@ impl Resolver<'_, '_> {
     /// `%X12`, `%XM3`, `%X3.12`, `%X3.IN`, `%X3.OUT`, and `.T` behind these.
     fn direct_step(&mut self, text: &str, at: Span) -> Option<Ref> {
         self.known_direct_step(text).or_else(|| {
-            let problem = Problem::new(&codes::UNKNOWN_STEP, at, format!("there is no step `%{text}`"));
-            self.report(problem.help(
-                "`%X12` is step 12 of the first chart, `%X3.12` step 12 of the expansion of macro-step 3",
-            ))
+            let problem = Problem::new(&codes::UNKNOWN_STEP, at, say!("there is no step `%{text}`"));
+            self.report(problem.help(say!(
+                "`%X12` is step 12 of the first chart, `%X3.12` step 12 of the expansion of macro-step 3"
+            )))
         })
     }
 
@@ -446,13 +448,13 @@ impl Resolver<'_, '_> {
         };
         if self.frame.watched && class == Some(VarClass::Local) {
             self.problems.push(
-                Problem::new(&codes::NOT_HERE, at, "an edge or a delay cannot watch a local variable")
-                    .help("a local has no value between two runs; watch a variable of the chart"),
+                Problem::new(&codes::NOT_HERE, at, say!("an edge or a delay cannot watch a local variable"))
+                    .help(say!("a local has no value between two runs; watch a variable of the chart")),
             );
             return false;
         }
         if self.frame.role == Role::Constant && class != Some(VarClass::Const) {
-            let what = "a value that is known before the chart runs is needed here";
+            let what = say!("a value that is known before the chart runs is needed here");
             self.problems.push(Problem::new(&codes::NOT_CONSTANT, at, what));
             return false;
         }

@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Holds, Name, Problem, Span, Type, codes};
+use g7_model::{Holds, Name, Problem, Span, Type, codes, say};
 
 use super::scopes::Scopes;
 use crate::ir::{ChartId, FunctionId, SectionId, Unit, Value, Var, VarClass, VarId};
@@ -128,8 +128,8 @@ impl<'u, 'd> Resolver<'u, 'd> {
     /// Reports a name that is declared twice in one name space.
     pub(super) fn defined_twice(&mut self, name: &Name, first: Span) {
         self.problems.push(
-            Problem::new(&codes::DEFINED_TWICE, name.at.0, format!("`{}` is defined twice", name.text))
-                .related(first, "defined here first"),
+            Problem::new(&codes::DEFINED_TWICE, name.at.0, say!("`{}` is defined twice", name.text))
+                .related(first, say!("defined here first")),
         );
     }
 
@@ -142,7 +142,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
             return None; // The name could not be read; the parser has reported it.
         }
         let mut problem =
-            Problem::new(&codes::UNKNOWN_CHART, name.at.0, format!("there is no chart `{}`", name.text));
+            Problem::new(&codes::UNKNOWN_CHART, name.at.0, say!("there is no chart `{}`", name.text));
         if self.may_guess() {
             let near = nearest(&name.text, self.unit.charts.iter().map(|c| &*c.name));
             if let Some(near) = near {
@@ -162,14 +162,14 @@ impl<'u, 'd> Resolver<'u, 'd> {
         }
         let home = self.unit.charts.get(chart.index()).map(|c| (c.name.clone(), c.steps.clone()));
         let (chart_name, steps) = home?;
-        let what = format!("chart `{chart_name}` has no step `{}`", name.text);
+        let what = say!("chart `{chart_name}` has no step `{}`", name.text);
         let mut problem = Problem::new(&codes::UNKNOWN_STEP, name.at.0, what);
         if self.may_guess() {
             let of_chart = self.unit.steps.get(steps.start as usize..steps.end as usize).unwrap_or(&[]);
             let near = nearest(&name.text, of_chart.iter().map(|s| &*s.name));
             problem = match near {
                 Some(near) => problem.meant(near),
-                None => problem.help(format!("declare it: `step {}`", name.text)),
+                None => problem.help(say!("declare it: `step {}`", name.text)),
             };
         }
         self.report(problem)

@@ -3,7 +3,7 @@
 use std::mem::discriminant;
 
 use g7_engine::Rules;
-use g7_model::{Document, Item, Problem, Profile, ProfileName, Span, Switch, codes};
+use g7_model::{Document, Item, Problem, Profile, ProfileName, Span, Switch, codes, say};
 
 /// The rules that a profile starts from.
 pub fn of_profile(name: ProfileName) -> Rules {
@@ -37,8 +37,8 @@ pub(super) fn of_document(
         let Item::Profile(p) = item else { continue };
         match first {
             Some(f) => problems.push(
-                Problem::new(&codes::DEFINED_TWICE, p.at.0, "the profile is given twice")
-                    .related(f.at.0, "given here first"),
+                Problem::new(&codes::DEFINED_TWICE, p.at.0, say!("the profile is given twice"))
+                    .related(f.at.0, say!("given here first")),
             ),
             None => {
                 first = Some(p);
@@ -61,12 +61,12 @@ fn repeated_switches(p: &Profile, problems: &mut Vec<Problem>) {
     let mut seen: Vec<(Switch, Span)> = Vec::new();
     for (switch, at) in &p.switches {
         if matches!(switch, Switch::Bound(0)) {
-            problems.push(Problem::new(&codes::OUT_OF_RANGE, at.0, "a scan needs at least one pass"));
+            problems.push(Problem::new(&codes::OUT_OF_RANGE, at.0, say!("a scan needs at least one pass")));
         }
         match seen.iter().find(|(s, _)| discriminant(s) == discriminant(switch)) {
             Some((_, before)) => problems.push(
-                Problem::new(&codes::DEFINED_TWICE, at.0, "this switch is set twice")
-                    .related(*before, "set here first"),
+                Problem::new(&codes::DEFINED_TWICE, at.0, say!("this switch is set twice"))
+                    .related(*before, say!("set here first")),
             ),
             None => seen.push((*switch, at.0)),
         }

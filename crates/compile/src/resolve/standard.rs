@@ -5,7 +5,8 @@
 
 use g7_engine::Builtin;
 use g7_model::{
-    Arg, BinaryOp as Sign, FunctionRow, Name, Operands, Problem, Span, StandardFunction, Type, codes,
+    Arg, BinaryOp as Sign, FunctionRow, Name, Operands, Problem, Said, Span, StandardFunction, Type, codes,
+    say,
 };
 
 use super::constant;
@@ -113,7 +114,7 @@ impl Resolver<'_, '_> {
         if given.len() < ordered.len().max(row.least()) {
             self.read_all(args);
             let inputs = row.inputs.join(", ");
-            let what = format!("`{}` takes ({inputs}), here are {}", row.name, args.len());
+            let what = say!("`{}` takes ({}), here are {}", row.name, Said::foreign(inputs), args.len());
             return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
         }
         match way(standard) {
@@ -182,9 +183,9 @@ impl Resolver<'_, '_> {
     fn in_turn(&mut self, op: Sign, row: FunctionRow, typed: &[Typed], at: Span) -> Option<Typed> {
         let between = typed.iter().skip(1).take(typed.len().saturating_sub(2));
         if let Some(once) = between.into_iter().find(|t| !can_stand_twice(&t.expr)) {
-            let what = format!("`{}` would compute this value twice", row.name);
+            let what = say!("`{}` would compute this value twice", row.name);
             let problem = Problem::new(&codes::WRONG_ARGUMENTS, once.expr.at, what);
-            return self.report(problem.help("give it to a variable first"));
+            return self.report(problem.help(say!("give it to a variable first")));
         }
         let mut all = None;
         for pair in typed.windows(2) {
@@ -215,17 +216,17 @@ impl Resolver<'_, '_> {
         let (bits, count) = (bits?, count?);
         let ty = if bits.literal { hint.unwrap_or(Type::Udint) } else { bits.expr.ty };
         if !unsigned(&ty) {
-            let what = format!("`{}` takes a USINT, UINT, UDINT or ULINT, this is {ty}", row.name);
+            let what = say!("`{}` takes a USINT, UINT, UDINT or ULINT, this is {ty}", row.name);
             let problem = Problem::new(&codes::WRONG_TYPE, bits.expr.at, what);
             return self.report(match ty {
                 Type::Sint | Type::Int | Type::Dint | Type::Lint => {
-                    problem.help(format!("convert it with `{ty}_TO_U{ty}(…)`; a negative value is a fault"))
+                    problem.help(say!("convert it with `{ty}_TO_U{ty}(…)`; a negative value is a fault"))
                 }
                 _ => problem,
             });
         }
         if let ExprKind::Const(Value::Int(..0)) = &count.kind {
-            let what = format!("`{}` by a negative number has no result", row.name);
+            let what = say!("`{}` by a negative number has no result", row.name);
             return self.report(Problem::new(&codes::CONSTANT_FAULT, count.at, what));
         }
         let bits = self.coerce(bits, ty)?;
@@ -247,9 +248,9 @@ impl Resolver<'_, '_> {
         let typed: Vec<Typed> = typed.into_iter().collect::<Option<_>>()?;
         let Some(ty) = shared(&typed, shape, hint) else {
             let names: Vec<String> = typed.iter().map(|t| t.expr.ty.to_string()).collect();
-            let what = format!("`{}` cannot take {}", row.name, names.join(", "));
+            let what = say!("`{}` cannot take {}", row.name, Said::foreign(names.join(", ")));
             let problem = Problem::new(&codes::WRONG_TYPE, at, what);
-            return self.report(problem.help("its values must be of one type, or widen to one"));
+            return self.report(problem.help(say!("its values must be of one type, or widen to one")));
         };
         let mut values: Vec<Option<Expr>> = Vec::new();
         if selects {
@@ -279,7 +280,7 @@ impl Resolver<'_, '_> {
         let typed = self.infer(&arg.value, None)?;
         let from = if typed.literal || typed.expr.ty.is_integer() { Type::Lreal } else { typed.expr.ty };
         if !from.is_real() {
-            let what = format!("`TRUNC` takes a REAL or LREAL, this is {from}");
+            let what = say!("`TRUNC` takes a REAL or LREAL, this is {from}");
             return self.report(Problem::new(&codes::WRONG_TYPE, typed.expr.at, what));
         }
         let e = self.coerce(typed, from)?;

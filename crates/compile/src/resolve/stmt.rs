@@ -1,8 +1,8 @@
 //! Structured Text: statements, targets and blocks with their own variables.
 
 use g7_model::{
-    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Fix, Name, Path, Problem, Span,
-    Stmt as WrittenStmt, StmtKind as Statement, Type, Work, codes,
+    Arg, Block, CaseArm, Expr as Written, ExprKind as Form, Fix, Name, Path, Problem, Said, Span,
+    Stmt as WrittenStmt, StmtKind as Statement, Type, Work, codes, say,
 };
 
 use super::refer::Ref;
@@ -54,10 +54,10 @@ impl Resolver<'_, '_> {
 
     fn declare_local(&mut self, name: &Name, ty: Type, owner: &str) -> Option<VarId> {
         if let Type::Fb(kind) = ty {
-            let what = format!("a {} remembers; a local variable does not", kind.name());
+            let what = say!("a {} remembers; a local variable does not", kind);
             return self.report(
                 Problem::new(&codes::BAD_DECLARATION, name.at.0, what)
-                    .help("declare the instance in the chart or in the file"),
+                    .help(say!("declare the instance in the chart or in the file")),
             );
         }
         self.fitting_string(ty, name.at.0)?;
@@ -98,8 +98,8 @@ impl Resolver<'_, '_> {
                 StmtKind::Repeat(body, self.condition(until)?)
             }
             Statement::Exit if self.frame.loops == 0 => {
-                let problem = Problem::new(&codes::EXIT_OUTSIDE, at, "EXIT stands in no loop");
-                return self.report(problem.help("RETURN leaves the whole body"));
+                let problem = Problem::new(&codes::EXIT_OUTSIDE, at, say!("EXIT stands in no loop"));
+                return self.report(problem.help(say!("RETURN leaves the whole body")));
             }
             Statement::Exit => StmtKind::Exit,
             Statement::Return => StmtKind::Return,
@@ -135,17 +135,17 @@ impl Resolver<'_, '_> {
     /// step bit, and no other assignment (PL7 reference manual, preliminary processing).
     fn preset(&mut self, step: crate::ir::StepId, at: Span, value: &Written) -> Option<StmtKind> {
         let value = self.value(value, Type::Bool)?;
-        let refused = |what: &str| Problem::new(&codes::NOT_WRITABLE, at, what);
+        let refused = |what: Said| Problem::new(&codes::NOT_WRITABLE, at, what);
         if self.expansion(step).is_some() {
-            let problem = refused("the activity of a macro-step cannot be assigned");
-            return self.report(problem.help("set a step of its expansion, as in `%X3.IN := TRUE`"));
+            let problem = refused(say!("the activity of a macro-step cannot be assigned"));
+            return self.report(problem.help(say!("set a step of its expansion, as in `%X3.IN := TRUE`")));
         }
         match value.kind {
             ExprKind::Const(Value::Bool(true)) => Some(StmtKind::Service(Service::SetStep(step))),
             ExprKind::Const(Value::Bool(false)) => Some(StmtKind::Service(Service::ResetStep(step))),
             _ => {
-                let problem = refused("a step is set or reset, it does not follow a value");
-                self.report(problem.help("write `IF … THEN %X12 := TRUE END_IF`"))
+                let problem = refused(say!("a step is set or reset, it does not follow a value"));
+                self.report(problem.help(say!("write `IF … THEN %X12 := TRUE END_IF`")))
             }
         }
     }
@@ -183,7 +183,7 @@ impl Resolver<'_, '_> {
         let to = self.value(to, ty);
         let by = by.map(|by| self.value(by, ty));
         if let Some(Some(Expr { kind: ExprKind::Const(Value::Int(0)), at, .. })) = &by {
-            let problem = Problem::new(&codes::OUT_OF_RANGE, *at, "a loop by 0 never ends");
+            let problem = Problem::new(&codes::OUT_OF_RANGE, *at, say!("a loop by 0 never ends"));
             self.problems.push(problem);
         }
         let body = self.loop_body(body);
@@ -200,7 +200,7 @@ impl Resolver<'_, '_> {
         match target {
             Target::Var(v) if ty.is_integer() => Some((v, ty)),
             _ => {
-                let what = format!("a FOR loop counts in a whole number; `{}` is {ty}", var.text);
+                let what = say!("a FOR loop counts in a whole number; `{}` is {ty}", var.text);
                 self.report(Problem::new(&codes::WRONG_TYPE, var.at.0, what))
             }
         }
@@ -231,10 +231,10 @@ impl Resolver<'_, '_> {
         if e.ty.is_integer() && e.ty != Type::Ulint {
             return Some(e);
         }
-        let what = format!("CASE selects by a whole number up to LINT; this is {}", e.ty);
+        let what = say!("CASE selects by a whole number up to LINT; this is {}", e.ty);
         let problem = Problem::new(&codes::WRONG_TYPE, e.at, what);
         self.report(match e.ty {
-            Type::Bool => problem.help("use IF for a BOOL"),
+            Type::Bool => problem.help(say!("use IF for a BOOL")),
             _ => problem,
         })
     }
@@ -249,8 +249,8 @@ impl Resolver<'_, '_> {
             None => low,
         };
         if low > high {
-            let what = format!("the range {low} .. {high} holds nothing");
-            let order = format!("write {high} .. {low}");
+            let what = say!("the range {low} .. {high} holds nothing");
+            let order = say!("write {high} .. {low}");
             let fix = Fix::likely(order.clone(), at, format!("{high}..{low}"));
             return self.report(Problem::new(&codes::EMPTY_RANGE, at, what).help(order).fix(fix));
         }
@@ -264,7 +264,9 @@ impl Resolver<'_, '_> {
         let value = value?;
         match value.kind {
             ExprKind::Const(Value::Int(n)) => i64::try_from(n).ok(),
-            _ => self.report(Problem::new(&codes::NOT_CONSTANT, value.at, "a label must be a constant")),
+            _ => {
+                self.report(Problem::new(&codes::NOT_CONSTANT, value.at, say!("a label must be a constant")))
+            }
         }
     }
 
@@ -276,12 +278,13 @@ impl Resolver<'_, '_> {
             if let Some((end, before)) = widest.filter(|(end, _)| *end >= low) {
                 let (first, second) = if before < at { (before, at) } else { (at, before) };
                 let shared = if low == end.min(high) {
-                    format!("{low} is selected twice")
+                    say!("{low} is selected twice")
                 } else {
-                    format!("{low} .. {} is selected twice", end.min(high))
+                    say!("{low} .. {} is selected twice", end.min(high))
                 };
                 self.problems.push(
-                    Problem::new(&codes::LABELS_OVERLAP, second, shared).related(first, "this arm runs"),
+                    Problem::new(&codes::LABELS_OVERLAP, second, shared)
+                        .related(first, say!("this arm runs")),
                 );
             }
             if widest.is_none_or(|(end, _)| high > end) {
@@ -301,7 +304,7 @@ impl Resolver<'_, '_> {
             Form::Direct(text) => self.refer_direct(text, at)?,
             Form::Bad => return None,
             _ => {
-                let what = "only a variable can be assigned";
+                let what = say!("only a variable can be assigned");
                 return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
             }
         };
@@ -324,10 +327,10 @@ impl Resolver<'_, '_> {
             Ref::Var(v) => {
                 let (class, ty) = self.var(v).map(|v| (v.class, v.ty))?;
                 if let Type::Fb(kind) = ty {
-                    let what = format!("an instance of {} cannot be assigned", kind.name());
+                    let what = say!("an instance of {} cannot be assigned", kind);
                     return self.report(
                         Problem::new(&codes::NOT_WRITABLE, at, what)
-                            .help("call it, or assign one of its inputs"),
+                            .help(say!("call it, or assign one of its inputs")),
                     );
                 }
                 self.may_write(v, class, at)?;
@@ -337,7 +340,7 @@ impl Resolver<'_, '_> {
                 let Type::Fb(kind) = self.var(v)?.ty else { return None };
                 let (name, ty, input) = *kind.members().get(usize::from(m))?;
                 if !input {
-                    let what = format!("`{name}` is an output of the {}", kind.name());
+                    let what = say!("`{name}` is an output of the {}", kind);
                     return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
                 }
                 self.may_write(v, VarClass::Internal, at)?;
@@ -345,10 +348,10 @@ impl Resolver<'_, '_> {
             }
             Ref::Active(_) | Ref::Time(..) => {
                 let problem =
-                    Problem::new(&codes::NOT_WRITABLE, at, "the state of a step cannot be assigned");
-                self.report(problem.help(
-                    "transitions, forcing orders and SETSTEP change it, and in PRE `%X12 := TRUE` or `FALSE`",
-                ))
+                    Problem::new(&codes::NOT_WRITABLE, at, say!("the state of a step cannot be assigned"));
+                self.report(problem.help(say!(
+                    "transitions, forcing orders and SETSTEP change it, and in PRE `%X12 := TRUE` or `FALSE`"
+                )))
             }
         }
     }
@@ -356,19 +359,20 @@ impl Resolver<'_, '_> {
     /// Checks that this code may write this variable; reports a problem if not.
     pub(super) fn may_write(&mut self, v: VarId, class: VarClass, at: Span) -> Option<()> {
         let name = self.var(v).map(|v| v.name.clone())?;
-        let refused = |what: &str| Problem::new(&codes::NOT_WRITABLE, at, format!("`{name}` is {what}"));
+        let refused = |what: Said| Problem::new(&codes::NOT_WRITABLE, at, say!("`{name}` is {what}"));
         let declared = self.var(v).map(|v| v.at)?;
         match class {
             VarClass::Input => {
-                let problem = refused("an input").related(declared, "declared here");
-                return self.report(problem.help("inputs come from outside; write an `output` or a `var`"));
+                let problem = refused(say!("an input")).related(declared, say!("declared here"));
+                return self
+                    .report(problem.help(say!("inputs come from outside; write an `output` or a `var`")));
             }
             VarClass::Const => {
-                let problem = refused("a constant").related(declared, "declared here");
-                return self.report(problem.help("declare it as `var` if it is to change"));
+                let problem = refused(say!("a constant")).related(declared, say!("declared here"));
+                return self.report(problem.help(say!("declare it as `var` if it is to change")));
             }
             VarClass::System if super::system::kept_by_system(&name) => {
-                return self.report(refused("kept by the system"));
+                return self.report(refused(say!("kept by the system")));
             }
             VarClass::Output | VarClass::Internal | VarClass::Local | VarClass::System => {}
         }
@@ -376,24 +380,25 @@ impl Resolver<'_, '_> {
             Role::Function(f) => {
                 let input = self.unit.functions.get(f.index()).is_some_and(|f| f.params.contains(&v));
                 if input {
-                    return self.report(refused("an input of the function"));
+                    return self.report(refused(say!("an input of the function")));
                 }
                 if class != VarClass::Local {
-                    let problem = refused("not the function's own");
-                    return self.report(problem.help("a function only computes its result"));
+                    let problem = refused(say!("not the function's own"));
+                    return self.report(problem.help(say!("a function only computes its result")));
                 }
             }
             Role::Section(s) => {
                 let own = self.unit.sections.get(s.index()).map(|s| s.output) == Some(v);
                 if !own && class != VarClass::Local {
-                    let problem = refused("not the output of this transition section");
-                    return self.report(problem.help("a section assigns only the BOOL that has its name"));
+                    let problem = refused(say!("not the output of this transition section"));
+                    return self
+                        .report(problem.help(say!("a section assigns only the BOOL that has its name")));
                 }
             }
             Role::Code | Role::Query | Role::Constant => {
                 if self.scopes.section_outputs.contains(&v) {
-                    let problem = refused("the output of a transition section");
-                    return self.report(problem.related(declared, "only this section assigns it"));
+                    let problem = refused(say!("the output of a transition section"));
+                    return self.report(problem.related(declared, say!("only this section assigns it")));
                 }
             }
         }
@@ -412,8 +417,8 @@ impl Resolver<'_, '_> {
         }
         // A function called as a statement: its arguments are checked, its result is lost.
         self.call(path, args, None, at)?;
-        let what = format!("nothing takes the result of `{}`", path.text());
-        self.report(Problem::new(&codes::WRONG_KIND, at, what).help("assign it: `n := …`"))
+        let what = say!("nothing takes the result of `{}`", path.text());
+        self.report(Problem::new(&codes::WRONG_KIND, at, what).help(say!("assign it: `n := …`")))
     }
 
     /// The call of a function block; the outer `None` means that the path names none.
@@ -444,13 +449,14 @@ impl Resolver<'_, '_> {
 
     fn service_call(&mut self, name: &Name, wanted: usize, args: &[Arg], at: Span) -> Option<Service> {
         if self.frame.role != Role::Code {
-            let what = format!("the service `{}` cannot be called here", name.text);
+            let what = say!("the service `{}` cannot be called here", name.text);
             return self.report(
-                Problem::new(&codes::NOT_HERE, name.at.0, what).help("call it in an action or a PRE section"),
+                Problem::new(&codes::NOT_HERE, name.at.0, what)
+                    .help(say!("call it in an action or a PRE section")),
             );
         }
         if args.len() != wanted || args.iter().any(|a| a.name.is_some()) {
-            let what = format!("`{}` takes {wanted} arguments by position", name.text);
+            let what = say!("`{}` takes {wanted} arguments by position", name.text);
             return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
         }
         let first = args.first().map(|a| &a.value);
@@ -474,7 +480,7 @@ impl Resolver<'_, '_> {
         {
             return self.chart_named(name);
         }
-        self.report(Problem::new(&codes::WRONG_ARGUMENTS, e.at.0, "the name of a chart is needed here"))
+        self.report(Problem::new(&codes::WRONG_ARGUMENTS, e.at.0, say!("the name of a chart is needed here")))
     }
 
     fn step_argument(&mut self, e: &Written) -> Option<crate::ir::StepId> {
@@ -490,7 +496,9 @@ impl Resolver<'_, '_> {
     }
 
     fn no_step<T>(&mut self, at: Span) -> Option<T> {
-        let what = "a step is needed here";
-        self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what).help("write its activity, as in `G.X12`"))
+        let what = say!("a step is needed here");
+        self.report(
+            Problem::new(&codes::WRONG_ARGUMENTS, at, what).help(say!("write its activity, as in `G.X12`")),
+        )
     }
 }

@@ -1,6 +1,6 @@
 //! Widening of types, and how a value takes the type that its place needs.
 
-use g7_model::{Problem, Span, Type, codes};
+use g7_model::{Problem, Said, Span, Type, codes, say};
 
 use super::constant::{self, Fault};
 use super::resolver::Resolver;
@@ -101,7 +101,7 @@ impl Resolver<'_, '_> {
         if let ExprKind::Const(Value::Str(s)) = &e.kind
             && s.len() > usize::from(most)
         {
-            let what = format!("this text has {} bytes, at most {most} fit", s.len());
+            let what = say!("this text has {} bytes, at most {most} fit", s.len());
             return self.report(Problem::new(&codes::OUT_OF_RANGE, e.at, what));
         }
         Some(e)
@@ -135,9 +135,13 @@ impl Resolver<'_, '_> {
     }
 
     fn out_of_range<T>(&mut self, value: impl std::fmt::Display, ty: Type, at: Span) -> Option<T> {
-        let mut problem = Problem::new(&codes::OUT_OF_RANGE, at, format!("{value} does not fit into {ty}"));
+        let mut problem = Problem::new(
+            &codes::OUT_OF_RANGE,
+            at,
+            say!("{} does not fit into {ty}", Said::foreign(value.to_string())),
+        );
         if let Some((least, most)) = ty.bounds() {
-            problem.help = Some(format!("{ty} goes from {least} to {most}"));
+            problem.help = Some(say!("{ty} goes from {least} to {most}"));
         }
         self.report(problem)
     }
@@ -161,10 +165,10 @@ impl Resolver<'_, '_> {
     pub(super) fn constant_fault<T>(&mut self, fault: Fault, ty: Type, at: Span) -> Option<T> {
         self.report(match fault {
             Fault::Overflow => {
-                let what = format!("the result does not fit into {ty}");
+                let what = say!("the result does not fit into {ty}");
                 Problem::new(&codes::CONSTANT_FAULT, at, what)
             }
-            Fault::Division => Problem::new(&codes::CONSTANT_FAULT, at, "division by zero"),
+            Fault::Division => Problem::new(&codes::CONSTANT_FAULT, at, say!("division by zero")),
         })
     }
 }
@@ -189,26 +193,26 @@ fn wrong_type(e: &Expr, want: Type) -> Problem {
     let problem = Problem::new(
         &codes::WRONG_TYPE,
         e.at,
-        format!("this is {}, but {} is needed here", plain(e.ty), plain(want)),
+        say!("this is {}, but {} is needed here", plain(e.ty), plain(want)),
     );
     match (e.ty, want) {
         (Type::Fb(kind), _) => {
             let outputs = kind.members().iter().filter(|m| !m.2 && m.1 == want);
             match outputs.map(|m| m.0).next() {
-                Some(q) => problem.help(format!("its output is `.{q}`")),
+                Some(q) => problem.help(say!("its output is `.{q}`")),
                 None => problem,
             }
         }
         (_, Type::Fb(_)) => problem,
-        (from, Type::Bool) if from.is_number() => problem.help("compare it, as in `n <> 0`"),
+        (from, Type::Bool) if from.is_number() => problem.help(say!("compare it, as in `n <> 0`")),
         (from, to) if from.is_number() && to.is_number() => {
-            problem.help(format!("convert it with `{from}_TO_{to}(…)`; a value that does not fit is a fault"))
+            problem.help(say!("convert it with `{from}_TO_{to}(…)`; a value that does not fit is a fault"))
         }
         (Type::Time, to) if to.is_number() => {
-            problem.help(format!("convert it with `TIME_TO_{to}(…)`, in milliseconds"))
+            problem.help(say!("convert it with `TIME_TO_{to}(…)`, in milliseconds"))
         }
         (from, Type::Time) if from.is_number() => {
-            problem.help(format!("convert it with `{from}_TO_TIME(…)`, in milliseconds"))
+            problem.help(say!("convert it with `{from}_TO_TIME(…)`, in milliseconds"))
         }
         _ => problem,
     }
@@ -216,18 +220,20 @@ fn wrong_type(e: &Expr, want: Type) -> Problem {
 
 fn wrong_literal(value: &Value, want: Type, at: Span) -> Problem {
     let what = match value {
-        Value::Real(_) => "a real number",
-        _ => "a whole number",
+        Value::Real(_) => say!("a real number"),
+        _ => say!("a whole number"),
     };
     let problem =
-        Problem::new(&codes::WRONG_TYPE, at, format!("this is {what}, but {} is needed here", plain(want)));
+        Problem::new(&codes::WRONG_TYPE, at, say!("this is {what}, but {} is needed here", plain(want)));
     match (value, want) {
-        (_, Type::Time) => problem.help("write a duration, as in `5s` or `200ms`"),
-        (Value::Int(_), Type::Bool) => problem.help("of the numbers only 0 and 1 stand for FALSE and TRUE"),
-        (Value::Real(_), want) if want.is_number() => {
-            problem.help(format!("write a whole number, or round with `REAL_TO_{}(…)`", plain(want)))
+        (_, Type::Time) => problem.help(say!("write a duration, as in `5s` or `200ms`")),
+        (Value::Int(_), Type::Bool) => {
+            problem.help(say!("of the numbers only 0 and 1 stand for FALSE and TRUE"))
         }
-        (Value::Int(n), Type::String(_)) => problem.help(format!("write it as a text: '{n}'")),
+        (Value::Real(_), want) if want.is_number() => {
+            problem.help(say!("write a whole number, or round with `REAL_TO_{}(…)`", plain(want)))
+        }
+        (Value::Int(n), Type::String(_)) => problem.help(say!("write it as a text: '{n}'")),
         _ => problem,
     }
 }

@@ -1,6 +1,6 @@
 //! Variables: their place in the name spaces, their types, their initial values.
 
-use g7_model::{Expr as Written, Name, Problem, Span, Type, VarDecl, VarKind, codes};
+use g7_model::{Expr as Written, Name, Problem, Said, Span, Type, VarDecl, VarKind, codes, say};
 
 use super::resolver::{Frame, Resolver, Role};
 use super::scopes::{Entity, normal_address};
@@ -78,18 +78,18 @@ impl<'d> Resolver<'_, 'd> {
         let at = decl.names.first().map_or(decl.at.0, |n| n.at.0);
         if let Type::Fb(kind) = decl.ty {
             let wrong = match decl.kind {
-                VarKind::Input => Some("an input"),
-                VarKind::Output => Some("an output"),
-                VarKind::Const => Some("a constant"),
-                VarKind::Var if decl.init.is_some() => Some("given an initial value"),
-                VarKind::Var if decl.address.is_some() => Some("placed at an address"),
+                VarKind::Input => Some(say!("an input")),
+                VarKind::Output => Some(say!("an output")),
+                VarKind::Const => Some(say!("a constant")),
+                VarKind::Var if decl.init.is_some() => Some(say!("given an initial value")),
+                VarKind::Var if decl.address.is_some() => Some(say!("placed at an address")),
                 VarKind::Var => None,
             };
             if let Some(wrong) = wrong {
-                let what = format!("an instance of {} cannot be {wrong}", kind.name());
+                let what = say!("an instance of {} cannot be {wrong}", kind);
                 self.problems.push(
                     Problem::new(&codes::BAD_DECLARATION, at, what)
-                        .help(format!("declare it plainly: `var name : {}`", kind.name())),
+                        .help(say!("declare it plainly: `var name : {}`", kind.name())),
                 );
                 return false;
             }
@@ -101,7 +101,7 @@ impl<'d> Resolver<'_, 'd> {
     pub(super) fn fitting_string(&mut self, ty: Type, at: Span) -> Option<()> {
         match ty {
             Type::String(n) if n == 0 || n > g7_engine::TEXT => {
-                let what = format!("a STRING holds 1 to {} bytes, not {n}", g7_engine::TEXT);
+                let what = say!("a STRING holds 1 to {} bytes, not {n}", g7_engine::TEXT);
                 self.report(Problem::new(&codes::BAD_DECLARATION, at, what))
             }
             _ => Some(()),
@@ -113,27 +113,27 @@ impl<'d> Resolver<'_, 'd> {
         let Some(address) = decl.address.as_ref().filter(|a| a.text.starts_with('%')) else { return };
         let normal = normal_address(&address.text);
         let area = match normal.as_bytes().first() {
-            Some(b'I') => Some((VarKind::Input, "an input")),
-            Some(b'Q') => Some((VarKind::Output, "an output")),
+            Some(b'I') => Some((VarKind::Input, say!("an input"))),
+            Some(b'Q') => Some((VarKind::Output, say!("an output"))),
             Some(b'X' | b'S') => None,
-            _ => Some((decl.kind, "")),
+            _ => Some((decl.kind, Said::default())),
         };
         let written = &address.text;
         match area {
             None => {
-                let what = format!("`{written}` belongs to the system; no variable can stand there");
+                let what = say!("`{written}` belongs to the system; no variable can stand there");
                 self.problems.push(Problem::new(&codes::BAD_DECLARATION, address.at.0, what));
             }
             Some((kind, area)) if kind != decl.kind => {
-                let what = format!("`{written}` is the address of {area}");
+                let what = say!("`{written}` is the address of {area}");
                 self.problems.push(Problem::new(&codes::BAD_DECLARATION, address.at.0, what));
             }
             Some(_) => match self.scopes.addresses.get(&normal).copied() {
                 Some(before) => {
-                    let what = format!("`{written}` is the address of two variables");
+                    let what = say!("`{written}` is the address of two variables");
                     let mut problem = Problem::new(&codes::ADDRESS_TWICE, address.at.0, what);
                     if let Some(v) = self.var(before) {
-                        problem = problem.related(v.at, format!("`{}` is there already", v.name));
+                        problem = problem.related(v.at, say!("`{}` is there already", v.name));
                     }
                     self.problems.push(problem);
                 }
@@ -170,7 +170,7 @@ impl<'d> Resolver<'_, 'd> {
         match value.kind {
             ExprKind::Const(v) => Some(v),
             _ => {
-                let what = "a value that is known before the chart runs is needed here";
+                let what = say!("a value that is known before the chart runs is needed here");
                 self.report(Problem::new(&codes::NOT_CONSTANT, value.at, what))
             }
         }

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
-use g7_model::{BinaryOp, Expr, Stmt, codes};
+use g7_model::{BinaryOp, Expr, Said, Stmt, codes, say};
 
 use super::project::Key;
 use super::tables::table_name;
@@ -67,7 +67,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         self.fits().ok()?;
         let at = self.whole();
         let Some(found) = self.text.find(['<', '>', '=']) else {
-            self.say(&codes::BAD_TEXT, at, "a comparison without `<`, `>` or `=`");
+            self.say(&codes::BAD_TEXT, at, say!("a comparison without `<`, `>` or `=`"));
             return None;
         };
         let rest = self.text.get(found..).unwrap_or("");
@@ -86,7 +86,11 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         };
         if rest.starts_with("=>") {
             let place = self.start + found..self.start + found + 2;
-            self.report.say(&codes::DIFFERENT, &place, "`=>` is read as `=`, as ClassicLadder reads it");
+            self.report.say(
+                &codes::DIFFERENT,
+                &place,
+                say!("`=>` is read as `=`, as ClassicLadder reads it"),
+            );
         }
         let (whole, span) = (self.text, self.report.span(&self.whole()));
         self.text = whole.get(..found).unwrap_or("");
@@ -107,7 +111,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         let rest = self.text.get(self.at..).unwrap_or("");
         let blank = |n: &usize| rest.get(..*n).is_some_and(|s| s.chars().all(|c| ": ".contains(c)));
         let Some(skip) = rest.find('=').filter(blank) else {
-            self.say(&codes::BAD_TEXT, self.whole(), "an operation without `:=`");
+            self.say(&codes::BAD_TEXT, self.whole(), say!("an operation without `:=`"));
             return None;
         };
         self.at += skip + 1;
@@ -140,23 +144,18 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
 
     fn fits(&mut self) -> Result<(), Stop> {
         if self.text.len() > MOST_BYTES {
-            let what = format!("an expression of {} bytes; at most {MOST_BYTES} are read", self.text.len());
+            let what = say!("an expression of {} bytes; at most {MOST_BYTES} are read", self.text.len());
             return Err(self.say(&codes::TOO_LARGE, self.whole(), what));
         }
         Ok(())
     }
 
-    fn say(
-        &mut self,
-        code: &'static g7_model::codes::Code,
-        at: Range<usize>,
-        what: impl Into<String>,
-    ) -> Stop {
+    fn say(&mut self, code: &'static g7_model::codes::Code, at: Range<usize>, what: Said) -> Stop {
         self.report.say(code, &at, what);
         Stop
     }
 
-    fn fault(&mut self, what: impl Into<String>) -> Stop {
+    fn fault(&mut self, what: Said) -> Stop {
         let here = self.start + self.at;
         let end = (here + 1).min(self.start + self.text.len());
         self.say(&codes::BAD_TEXT, here..end.max(here), what)
@@ -176,7 +175,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
     fn all(&mut self) -> Read {
         let e = self.bits(0)?;
         if self.at < self.text.len() {
-            return Err(self.fault("something that is no part of an expression"));
+            return Err(self.fault(say!("something that is no part of an expression")));
         }
         Ok(e)
     }
@@ -246,13 +245,13 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
             Some(b'(') => {
                 self.depth += 1;
                 if self.depth > DEEPEST {
-                    return Err(self.fault("brackets nested too deeply"));
+                    return Err(self.fault(say!("brackets nested too deeply")));
                 }
                 self.at += 1;
                 let e = self.bits(0)?;
                 self.depth -= 1;
                 if !self.take(b')') {
-                    return Err(self.fault("a bracket that is not closed"));
+                    return Err(self.fault(say!("a bracket that is not closed")));
                 }
                 Ok(e)
             }
@@ -260,7 +259,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
                 self.at += 1;
                 self.depth += 1;
                 if self.depth > DEEPEST {
-                    return Err(self.fault("nested too deeply"));
+                    return Err(self.fault(say!("nested too deeply")));
                 }
                 let e = self.term()?;
                 self.depth -= 1;
@@ -289,7 +288,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
                 })
             }
             Some(b'0'..=b'9' | b'-' | b'$' | b'\'') => self.constant(),
-            _ => Err(self.fault("a variable, number or function is missing")),
+            _ => Err(self.fault(say!("a variable, number or function is missing"))),
         }
     }
 
@@ -301,7 +300,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         } else if self.take(b'\'') {
             let text = self.run(|b| b != b'\'');
             if !self.take(b'\'') {
-                return Err(self.fault("a character that is not closed"));
+                return Err(self.fault(say!("a character that is not closed")));
             }
             let value = text.bytes().try_fold(0i128, |v, b| (v < 1 << 40).then(|| v * 256 + i128::from(b)));
             return self.in_range(value, negative, start);
@@ -319,7 +318,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
                 let value = if value >= 1 << 31 { value - (1 << 32) } else { value };
                 Ok(int(if negative { -value } else { value }, span))
             }
-            None => Err(self.fault("a number that does not fit into 32 bits")),
+            None => Err(self.fault(say!("a number that does not fit into 32 bits"))),
         }
     }
 
@@ -334,7 +333,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
     /// `@200/3@`, or with an index `@200/3[200/4]@`.
     fn variable(&mut self) -> Result<Named, Stop> {
         if !self.take(b'@') {
-            return Err(self.fault("a variable is missing"));
+            return Err(self.fault(say!("a variable is missing")));
         }
         let key = self.key()?;
         let index = if self.take(b'[') { Some(self.key()?) } else { None };
@@ -342,7 +341,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
             self.take(b']');
         }
         if !self.take(b'@') {
-            return Err(self.fault("a variable that is not closed"));
+            return Err(self.fault(say!("a variable that is not closed")));
         }
         Ok(index.map_or(Named::One(key), |index| Named::At(key, index)))
     }
@@ -354,7 +353,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         let number = self.run(|b| b.is_ascii_digit()).parse();
         match (kind, slash, number) {
             (Ok(kind), true, Ok(number)) => Ok((kind, number)),
-            _ => Err(self.fault("a variable that cannot be read")),
+            _ => Err(self.fault(say!("a variable that cannot be read"))),
         }
     }
 
@@ -362,14 +361,14 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
         let start = self.at;
         let name = self.run(|b| b.is_ascii_uppercase());
         if !self.take(b'(') {
-            return Err(self.fault("a function without brackets"));
+            return Err(self.fault(say!("a function without brackets")));
         }
         let mut args = vec![self.operand()?];
         while self.take(b',') {
             args.push(self.operand()?);
         }
         if !self.take(b')') {
-            return Err(self.fault("a bracket that is not closed"));
+            return Err(self.fault(say!("a bracket that is not closed")));
         }
         let span = self.span(start);
         let count = args.len();
@@ -388,7 +387,7 @@ impl<'a, 'b, 'c> Arith<'a, 'b, 'c> {
                 call("POWER", args, span)
             }
             _ => {
-                let what = format!("the function `{name}` with {count} values has no counterpart");
+                let what = say!("the function `{name}` with {count} values has no counterpart");
                 return Err(self.say(
                     &codes::UNKNOWN_FUNCTION,
                     self.start + start..self.start + self.at,

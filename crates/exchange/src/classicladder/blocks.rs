@@ -1,6 +1,6 @@
 //! Timers, monostables and counters of a rung.
 
-use g7_model::{BinaryOp, Expr, Span, Type, codes};
+use g7_model::{BinaryOp, Expr, Span, Type, codes, say};
 
 use super::ladder::{Board, Ladder};
 use super::project::Cell;
@@ -14,7 +14,7 @@ impl Ladder<'_, '_> {
     /// An element of two columns: its inputs are one column before it.
     pub(super) fn block(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let Some(before) = x.checked_sub(1) else {
-            self.report.say(&codes::BAD_VALUE, &cell.at, "a block without room for its inputs");
+            self.report.say(&codes::BAD_VALUE, &cell.at, say!("a block without room for its inputs"));
             return;
         };
         match cell.kind {
@@ -22,9 +22,11 @@ impl Ladder<'_, '_> {
             11 => self.standard(board, cell, (before, y), (kind::MONOSTABLE_RUNNING, cell.var.1)),
             12 => self.counter(board, cell, (before, y)),
             13 => self.standard(board, cell, (before, y), (kind::IEC_DONE, cell.var.1)),
-            _ => {
-                self.report.say(&codes::NOT_CARRIED, &cell.at, "a register (FIFO or LIFO) has no counterpart")
-            }
+            _ => self.report.say(
+                &codes::NOT_CARRIED,
+                &cell.at,
+                say!("a register (FIFO or LIFO) has no counterpart"),
+            ),
         }
     }
 
@@ -35,7 +37,7 @@ impl Ladder<'_, '_> {
         let enable = board.left(before, y, at);
         let control = board.left(before, y + 1, at);
         if nodes::truth(&control) != Some(true) && control != enable {
-            let what = "a timer whose second input holds it; it runs on here";
+            let what = say!("a timer whose second input holds it; it runs on here");
             self.report.say(&codes::NOT_CARRIED, &cell.at, what);
         }
         self.standard(board, cell, (before, y), (kind::TIMER_DONE, cell.var.1));

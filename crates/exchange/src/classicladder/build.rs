@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use g7_model::{
     BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, Nanos, Param,
-    PlaceAt, Placed, Profile, ProfileName, Step, StepKind, Stmt, StmtKind, Switch, Type, codes,
+    PlaceAt, Placed, Profile, ProfileName, Said, Step, StepKind, Stmt, StmtKind, Switch, Type, codes, say,
 };
 use g7_model::{Expr, Local, Span};
 
@@ -40,7 +40,7 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
     let called: BTreeSet<i64> = cells.filter(|c| c.kind == 55).map(|c| i64::from(c.var.1)).collect();
     for section in plan.sections.iter().filter(|s| !s.sequential) {
         if section.routine.is_some_and(|number| !called.contains(&number)) {
-            let what = format!("nothing calls the sub-routine `{}`; it is left out", section.name);
+            let what = say!("nothing calls the sub-routine `{}`; it is left out", section.name);
             report.say(&codes::LEFT_OUT, &section.at, what);
         }
     }
@@ -77,7 +77,7 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
 fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
     let mut pages: Vec<(i64, String)> = Vec::new();
     let mut taken = Taken::default();
-    let mut add = |page: i64, wanted: &str, pages: &mut Vec<(i64, String)>| {
+    let mut add = |page: i64, wanted: Said, pages: &mut Vec<(i64, String)>| {
         let mut title = nodes::line(&wanted.replace('`', "'"));
         if title.is_empty() {
             title = format!("Page{page}");
@@ -87,7 +87,7 @@ fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
     for section in plan.sections.iter().filter(|s| s.sequential) {
         if pages.iter().any(|(p, _)| *p == section.page) {
             let what =
-                format!("the section `{}` runs a page a second time in a scan; it runs once", section.name);
+                say!("the section `{}` runs a page a second time in a scan; it runs once", section.name);
             report.say(&codes::NOT_CARRIED, &section.at, what);
         } else if plan.used.contains(&section.page) {
             add(section.page, &section.name, &mut pages);
@@ -100,7 +100,7 @@ fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
         if plan.sections.is_empty() {
             add(page, "", &mut pages);
         } else if let Some(step) = plan.steps.values().find(|s| s.page == page) {
-            let what = format!("no section runs page {page}; its chart is left out");
+            let what = say!("no section runs page {page}; its chart is left out");
             report.say(&codes::LEFT_OUT, &step.at, what);
         }
     }
@@ -116,9 +116,10 @@ fn step_names(plan: &Plan, report: &mut Report) -> BTreeMap<u32, String> {
         if !taken.insert(title.clone()) {
             title = format!("{title}_{index}");
             taken.insert(title.clone());
-            let what = format!(
+            let what = say!(
                 "a second step {}; it is called `{title}`, and its activity is not %X{}",
-                step.number, step.number
+                step.number,
+                step.number
             );
             report.say(&codes::RENAMED, &step.at, what);
         }
@@ -169,7 +170,7 @@ fn chart(
                     (Some(n), Some(s)) if s.page == page => ends.push(Name::new(n.as_str(), at)),
                     _ => {
                         let what =
-                            format!("transition {index} leads from or to a step that its page does not have");
+                            say!("transition {index} leads from or to a step that its page does not have");
                         ladder.report.say(&codes::BAD_LINK, &line.at, what);
                     }
                 }
@@ -180,7 +181,7 @@ fn chart(
         let receptivity = match &line.condition {
             Some((key, at)) => ladder.condition(*key, at),
             None => {
-                let what = format!("transition {index} has no condition; ClassicLadder reads %B0");
+                let what = say!("transition {index} has no condition; ClassicLadder reads %B0");
                 ladder.report.say(&codes::DIFFERENT, &line.at, what);
                 ladder.condition((0, 0), &line.at)
             }
@@ -239,7 +240,7 @@ fn sections<'b>(plan: &'b Plan, ladder: &mut Ladder<'_, 'b>) -> (Vec<Stmt>, Vec<
         }
         if index < last && !statements.is_empty() {
             let what =
-                format!("the section `{}` stands between two pages; it runs behind the last", section.name);
+                say!("the section `{}` stands between two pages; it runs behind the last", section.name);
             ladder.report.say(&codes::DIFFERENT, &section.at, what);
         }
         post.extend(statements);

@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use g7_model::{BinaryOp, CaseArm, Expr, Span, Stmt, StmtKind, Type, codes};
+use g7_model::{BinaryOp, CaseArm, Expr, Said, Span, Stmt, StmtKind, Type, codes, say};
 
 use super::arith::{Arith, Helper};
 use super::project::{Cell, Key, Plan, Rung, Section};
@@ -123,7 +123,7 @@ impl<'b> Ladder<'_, 'b> {
                     break;
                 }
                 let Some(rung) = self.plan.rungs.get(&here) else {
-                    let what = format!("there is no rung {here}; the section `{}` ends there", section.name);
+                    let what = say!("there is no rung {here}; the section `{}` ends there", section.name);
                     self.report.say(&codes::BAD_LINK, &section.at, what);
                     break;
                 };
@@ -134,7 +134,7 @@ impl<'b> Ladder<'_, 'b> {
                     break;
                 }
                 if seen.contains(&rung.next) && waiting.is_empty() && start == section.first {
-                    let what = format!("the rungs of the section `{}` go round in a circle", section.name);
+                    let what = say!("the rungs of the section `{}` go round in a circle", section.name);
                     self.report.say(&codes::BAD_LINK, &rung.at, what);
                 }
                 here = rung.next;
@@ -178,7 +178,8 @@ impl<'b> Ladder<'_, 'b> {
             for y in 0..rung.rows.len() {
                 let Some(cell) = board.cell(x, y) else { continue };
                 if self.left == 0 {
-                    let what = "more statements than are read; sub-routines are written out at each call";
+                    let what =
+                        say!("more statements than are read; sub-routines are written out at each call");
                     self.report.element(&codes::TOO_LARGE, "rung", &cell.at, what);
                     return board.deeds;
                 }
@@ -233,9 +234,9 @@ impl<'b> Ladder<'_, 'b> {
     fn element(&mut self, board: &mut Board, cell: &Cell, x: usize, y: usize) {
         let at = self.report.span(&cell.at);
         if cell.index.is_some() && !matches!(cell.kind, 0..=2 | 9 | 50..=53 | 99) {
-            let what = format!(
+            let what = say!(
                 "an element of this kind on a variable by index, from {} on",
-                variables::title(cell.var)
+                Said::foreign(variables::title(cell.var))
             );
             self.report.say(&codes::NOT_CARRIED, &cell.at, what);
             return;
@@ -270,7 +271,7 @@ impl<'b> Ladder<'_, 'b> {
             55 => self.call(board, cell, x, y),
             60 => self.operate(board, cell, x, y),
             kind => {
-                let what = format!("an element of kind {kind} of a rung is not known");
+                let what = say!("an element of kind {kind} of a rung is not known");
                 self.report.say(&codes::NOT_CARRIED, &cell.at, what);
             }
         }
@@ -304,7 +305,7 @@ impl<'b> Ladder<'_, 'b> {
     fn expression(&mut self, cell: &Cell) -> Option<(String, Range<usize>)> {
         let found = self.plan.expressions.get(&cell.var.1).filter(|(text, _)| !text.starts_with('#'));
         if found.is_none() {
-            let what = format!("the box has no expression: there is none of number {}", cell.var.1);
+            let what = say!("the box has no expression: there is none of number {}", cell.var.1);
             self.report.say(&codes::LEFT_OUT, &cell.at, what);
         }
         found.cloned()
@@ -354,12 +355,12 @@ impl<'b> Ladder<'_, 'b> {
         let number = i64::from(cell.var.1);
         let found = self.plan.sections.iter().find(|s| s.routine == Some(number) && !s.sequential);
         let Some(section) = found else {
-            let what = format!("there is no sub-routine {number}; the call does nothing");
+            let what = say!("there is no sub-routine {number}; the call does nothing");
             self.report.say(&codes::LEFT_OUT, &cell.at, what);
             return;
         };
         if self.open.contains(&number) {
-            let what = format!("the sub-routine {number} calls itself");
+            let what = say!("the sub-routine {number} calls itself");
             self.report.say(&codes::NOT_CARRIED, &cell.at, what);
             return;
         }

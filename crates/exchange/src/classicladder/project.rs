@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{codes, say};
 
 use super::read::{Line, Part};
 use g7_iec::report::Report;
@@ -129,7 +129,7 @@ pub(super) fn plan(parts: &[Part], report: &mut Report) -> Plan {
     let mut seen = BTreeSet::new();
     for part in parts {
         if !seen.insert(part.name) {
-            let what = format!("a second file `{}` in the project; it is left out", part.name);
+            let what = say!("a second file `{}` in the project; it is left out", part.name);
             report.say(&codes::LEFT_OUT, &part.at, what);
             continue;
         }
@@ -156,7 +156,11 @@ pub(super) fn plan(parts: &[Part], report: &mut Report) -> Plan {
         }
     }
     if !seen.contains("sequential.csv") {
-        report.say(&codes::LEFT_OUT, &(0..0), "the project has no sequential page, so there is no chart");
+        report.say(
+            &codes::LEFT_OUT,
+            &(0..0),
+            say!("the project has no sequential page, so there is no chart"),
+        );
     }
     plan
 }
@@ -165,10 +169,10 @@ pub(super) fn plan(parts: &[Part], report: &mut Report) -> Plan {
 fn other(part: &Part, report: &mut Report) {
     let used = part.lines.iter().find(|l| !l.is_remark() && !l.text.starts_with('#'));
     let what = match part.name {
-        "ioconf.csv" => "which hardware the inputs and outputs are wired to",
-        "modbusioconf.csv" => "inputs and outputs behind Modbus",
-        "config_events.csv" => "which events are logged",
-        "registers.csv" => "the modes of registers",
+        "ioconf.csv" => say!("which hardware the inputs and outputs are wired to"),
+        "modbusioconf.csv" => say!("inputs and outputs behind Modbus"),
+        "config_events.csv" => say!("which events are logged"),
+        "registers.csv" => say!("the modes of registers"),
         "project_infos.txt"
         | "com_params.txt"
         | "spy_vars.csv"
@@ -176,10 +180,10 @@ fn other(part: &Part, report: &mut Report) {
         | "remote_alarms.txt"
         | "log.csv"
         | "bool_free_vars_spy_list.csv" => return,
-        _ => "a file that is not known",
+        _ => say!("a file that is not known"),
     };
     if let Some(line) = used {
-        report.say(&codes::LEFT_OUT, &line.at, format!("`{}`, {what}, is left out", part.name));
+        report.say(&codes::LEFT_OUT, &line.at, say!("`{}`, {what}, is left out", part.name));
     }
 }
 
@@ -202,8 +206,8 @@ fn sections(part: &Part, plan: &mut Plan, report: &mut Report) {
         } else if !line.text.starts_with('#') {
             match line.numbers(0).as_deref() {
                 Some(_) if plan.sections.len() == MOST_SECTIONS => {
-                    let what = format!("the project has more than {MOST_SECTIONS} sections");
-                    report.element(&codes::TOO_LARGE, "section", &line.at, &what);
+                    let what = say!("the project has more than {MOST_SECTIONS} sections");
+                    report.element(&codes::TOO_LARGE, "section", &line.at, what);
                 }
                 Some(&[number, language, routine, first, last, page, ..]) => plan.sections.push(Section {
                     name: names.get(&number).cloned().unwrap_or_else(|| format!("Section{number}")),
@@ -215,7 +219,7 @@ fn sections(part: &Part, plan: &mut Plan, report: &mut Report) {
                     page,
                     at: line.at.clone(),
                 }),
-                _ => report.say(&codes::BAD_VALUE, &line.at, "a section that cannot be read"),
+                _ => report.say(&codes::BAD_VALUE, &line.at, say!("a section that cannot be read")),
             }
         }
     }
@@ -232,7 +236,7 @@ fn sequential(part: &Part, plan: &mut Plan, report: &mut Report) {
             _ => None,
         };
         if read.is_none() {
-            report.say(&codes::BAD_VALUE, &line.at, "a line of the chart that cannot be read");
+            report.say(&codes::BAD_VALUE, &line.at, say!("a line of the chart that cannot be read"));
         }
     }
 }
@@ -244,8 +248,8 @@ fn fits(page: i64, at: &Range<usize>, plan: &mut Plan, report: &mut Report) -> b
     }
     let fits = plan.used.contains(&page);
     if !fits {
-        let what = format!("the project has more than {MOST_PAGES} pages");
-        report.element(&codes::TOO_LARGE, "page", at, &what);
+        let what = say!("the project has more than {MOST_PAGES} pages");
+        report.element(&codes::TOO_LARGE, "page", at, what);
     }
     fits
 }
@@ -270,7 +274,7 @@ fn step(line: &Line, plan: &mut Plan, report: &mut Report) -> Option<()> {
         return Some(());
     }
     if plan.steps.insert(u32::try_from(index).ok()?, step).is_some() {
-        report.say(&codes::TWICE, &line.at, format!("the step of index {index} stands there twice"));
+        report.say(&codes::TWICE, &line.at, say!("the step of index {index} stands there twice"));
     }
     Some(())
 }
@@ -297,7 +301,7 @@ fn transition(line: &Line, plan: &mut Plan, report: &mut Report) -> Option<()> {
         return Some(());
     }
     if plan.transitions.insert(index, transition).is_some() {
-        report.say(&codes::TWICE, &line.at, format!("the transition of index {index} stands there twice"));
+        report.say(&codes::TWICE, &line.at, say!("the transition of index {index} stands there twice"));
     }
     Some(())
 }
@@ -343,7 +347,7 @@ fn blocks(part: &Part, letter: char, report: &mut Report) -> BTreeMap<u32, Block
             (Some(number), Some(block)) => {
                 blocks.insert(number, block);
             }
-            _ => report.say(&codes::BAD_VALUE, &line.at, "a timer or counter that cannot be read"),
+            _ => report.say(&codes::BAD_VALUE, &line.at, say!("a timer or counter that cannot be read")),
         }
     }
     blocks
@@ -400,7 +404,7 @@ fn rung(part: &Part, report: &mut Report) -> Rung {
         }
         let row = row(line, report);
         if rung.rows.len() == HIGHEST {
-            report.say(&codes::TOO_LARGE, &line.at, format!("a rung of more than {HIGHEST} lines"));
+            report.say(&codes::TOO_LARGE, &line.at, say!("a rung of more than {HIGHEST} lines"));
             break;
         }
         rung.rows.push(row);
@@ -417,11 +421,11 @@ fn row(line: &Line, report: &mut Report) -> Vec<Cell> {
         let at = start + lead..start + lead + piece.trim().len();
         start += piece.len() + 1;
         if cells.len() == WIDEST {
-            report.say(&codes::TOO_LARGE, &at, format!("a rung of more than {WIDEST} columns"));
+            report.say(&codes::TOO_LARGE, &at, say!("a rung of more than {WIDEST} columns"));
             break;
         }
         cells.push(cell(piece.trim(), at.clone()).unwrap_or_else(|| {
-            report.say(&codes::BAD_VALUE, &at, "an element of a rung that cannot be read");
+            report.say(&codes::BAD_VALUE, &at, say!("an element of a rung that cannot be read"));
             Cell { kind: 0, joined: false, var: (0, 0), index: None, at }
         }));
     }

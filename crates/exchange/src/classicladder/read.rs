@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{codes, say};
 
 use g7_iec::report::Report;
 
@@ -55,7 +55,7 @@ pub(super) fn parts<'a>(text: &'a str, report: &mut Report) -> Option<Vec<Part<'
         if sequential(text) {
             return Some(vec![Part { name: "sequential.csv", at: 0..0, lines }]);
         }
-        report.say(&codes::NOT_JGRAFCHART, &(0..0), "this is no project of ClassicLadder");
+        report.say(&codes::NOT_JGRAFCHART, &(0..0), say!("this is no project of ClassicLadder"));
         return None;
     }
     let mut parts: Vec<Part> = Vec::new();
@@ -64,7 +64,7 @@ pub(super) fn parts<'a>(text: &'a str, report: &mut Report) -> Option<Vec<Part<'
     for line in lines.into_iter().skip(1) {
         if let Some(name) = line.text.strip_prefix("_FILE-") {
             if open {
-                report.say(&codes::BAD_TEXT, &line.at, "a file inside a file of the project");
+                report.say(&codes::BAD_TEXT, &line.at, say!("a file inside a file of the project"));
             }
             parts.push(Part { name: name.trim(), at: line.at.clone(), lines: Vec::new() });
             open = true;
@@ -80,12 +80,12 @@ pub(super) fn parts<'a>(text: &'a str, report: &mut Report) -> Option<Vec<Part<'
                 &codes::UNKNOWN_ELEMENT,
                 "line",
                 &line.at,
-                "a line outside the files of the project",
+                say!("a line outside the files of the project"),
             );
         }
     }
     if open || !ended {
-        report.say(&codes::BAD_TEXT, &(text.len()..text.len()), "the project ends in the middle");
+        report.say(&codes::BAD_TEXT, &(text.len()..text.len()), say!("the project ends in the middle"));
     }
     Some(parts)
 }
@@ -95,7 +95,7 @@ fn lines<'a>(text: &'a str, report: &mut Report) -> Option<Vec<Line<'a>>> {
     let mut start = 0;
     for piece in text.split_inclusive('\n') {
         if lines.len() == MOST_LINES {
-            let what = format!("the file has more than {MOST_LINES} lines");
+            let what = say!("the file has more than {MOST_LINES} lines");
             report.say(&codes::TOO_LARGE, &(0..0), what);
             return None;
         }

@@ -5,7 +5,7 @@ use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 use std::ops::Range;
 
-use g7_model::{BinaryOp, Expr, ExprKind, FbKind, Name, Nanos, Span};
+use g7_model::{BinaryOp, Expr, ExprKind, FbKind, Name, Nanos, Said, Span, say};
 use g7_model::{Type, UnaryOp, VarDecl, VarKind, codes};
 
 use super::project::{Block, Key, Plan};
@@ -128,7 +128,8 @@ impl<'a> Vars<'a> {
         for symbol in &self.plan.symbols {
             let Some(key) = plain_key(&symbol.variable) else {
                 if !symbol.variable.is_empty() && symbol.step().is_none() {
-                    let what = "the name of a variable that is no bit, word, input or output is left out";
+                    let what =
+                        say!("the name of a variable that is no bit, word, input or output is left out");
                     report.element(&codes::LEFT_OUT, "symbol", &symbol.at, what);
                 }
                 continue;
@@ -137,7 +138,8 @@ impl<'a> Vars<'a> {
             if !wanted.is_empty() && !is_step_name(&wanted) && self.taken.insert(wanted.clone()) {
                 self.names.insert(key, wanted);
             } else if !wanted.is_empty() {
-                let what = format!("a second variable named `{wanted}`; it is called {}", title(key));
+                let what =
+                    say!("a second variable named `{wanted}`; it is called {}", Said::foreign(title(key)));
                 report.say(&codes::RENAMED, &symbol.at, what);
             }
             let at = symbol.at.clone();
@@ -200,7 +202,7 @@ impl<'a> Vars<'a> {
             };
             let mut decl = nodes::variable(kind, &name, ty, span);
             if matches!(key.0, kind::SYSTEM | kind::SYSTEM_WORD) {
-                let what = format!("the system variable {} becomes an input", title(key));
+                let what = say!("the system variable {} becomes an input", Said::foreign(title(key)));
                 report.say(&codes::DIFFERENT, at, what);
                 decl.address = Some(Name::new(plain, span));
             } else {
@@ -321,7 +323,11 @@ impl<'a> Vars<'a> {
     }
 
     pub(super) fn strange(&mut self, key: Key, at: &Range<usize>, report: &mut Report) -> Expr {
-        report.say(&codes::NOT_CARRIED, at, format!("the variable {} has no counterpart", title(key)));
+        report.say(
+            &codes::NOT_CARRIED,
+            at,
+            say!("the variable {} has no counterpart", Said::foreign(title(key))),
+        );
         nodes::bad(report.span(at))
     }
 
@@ -329,7 +335,7 @@ impl<'a> Vars<'a> {
     fn step(&mut self, number: u32, member: Option<&str>, at: &Range<usize>, report: &mut Report) -> Expr {
         let span = report.span(at);
         if !self.steps.contains_key(&number) {
-            let what = format!("there is no step {number}; its activity is FALSE and its time 0");
+            let what = say!("there is no step {number}; its activity is FALSE and its time 0");
             report.say(&codes::LEFT_OUT, at, what);
             return if member.is_some() { nodes::time(Nanos::ZERO, span) } else { boolean(false, span) };
         }
@@ -407,7 +413,11 @@ impl<'a> Vars<'a> {
                 Some(name(&[&part], span))
             }
             _ => {
-                report.say(&codes::NOT_CARRIED, at, format!("writing {} has no counterpart", title(key)));
+                report.say(
+                    &codes::NOT_CARRIED,
+                    at,
+                    say!("writing {} has no counterpart", Said::foreign(title(key))),
+                );
                 None
             }
         }

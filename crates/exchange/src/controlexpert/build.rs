@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use g7_model::{
     Action, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Layout, Name, NamedAction,
     Nanos, PlaceAt, Placed, Profile, ProfileName, Qualifier, Section, Span, Step, StepKind, Stmt, Target,
-    codes,
+    codes, say,
 };
 use roxmltree::Node;
 
@@ -76,7 +76,7 @@ fn chart_name(sheet: &Sheet, taken: &mut Taken, report: &mut Report) -> String {
     let wanted = if sheet.name.is_empty() { "Chart".to_string() } else { sheet.name.clone() };
     let title = taken.give(&wanted);
     if title != wanted {
-        let what = format!("a second chart `{wanted}`; it is called `{title}`");
+        let what = say!("a second chart `{wanted}`; it is called `{title}`");
         report.say(&codes::RENAMED, &sheet.at, what);
     }
     title
@@ -115,7 +115,7 @@ fn source(section: Node, report: &mut Report) -> Vec<Stmt> {
                 statements.extend(il::statements(&text.text, &place, report));
             }
             tag @ ("LDSource" | "FBDSource" | "LL984Source") => {
-                let what = format!("a section in a drawn language (`{tag}`) is left out");
+                let what = say!("a section in a drawn language (`{tag}`) is left out");
                 report.say(&codes::NOT_CARRIED, &attr::head(node), what);
             }
             _ => {}
@@ -199,7 +199,7 @@ fn step(node: &StepNode, sheet: &Sheet, inner: &Inner, report: &mut Report) -> S
                     report.say(
                         &codes::BAD_MACRO,
                         &node.at,
-                        format!("the macro-step `{wanted}` without its inside"),
+                        say!("the macro-step `{wanted}` without its inside"),
                     );
                     StepKind::Plain
                 }
@@ -208,7 +208,7 @@ fn step(node: &StepNode, sheet: &Sheet, inner: &Inner, report: &mut Report) -> S
     };
     step.comment = (!node.comment.is_empty()).then(|| node.comment.as_str().into());
     if let Some(delay) = &node.delay {
-        let what = format!("the delay time of step `{}` has no counterpart", clean(&node.name));
+        let what = say!("the delay time of step `{}` has no counterpart", clean(&node.name));
         report.say(&codes::NOT_CARRIED, delay, what);
     }
     step.actions = node.actions.iter().filter_map(|a| action(a, report)).collect();
@@ -223,12 +223,12 @@ fn action(node: &ActionNode, report: &mut Report) -> Option<Action> {
         word => Qualifier::named(word),
     };
     let Some(qualifier) = qualifier else {
-        let what = format!("the qualifier `{}` is not known", nodes::line(&node.qualifier));
+        let what = say!("the qualifier `{}` is not known", nodes::line(&node.qualifier));
         report.say(&codes::BAD_VALUE, &node.at, what);
         return None;
     };
     if node.name.text.trim().is_empty() {
-        report.say(&codes::LEFT_OUT, &node.at, "an action without a name");
+        report.say(&codes::LEFT_OUT, &node.at, say!("an action without a name"));
         return None;
     }
     let target = if node.section {
@@ -240,7 +240,7 @@ fn action(node: &ActionNode, report: &mut Report) -> Option<Action> {
             ExprKind::Direct(name) => Target::Direct(name, at.into()),
             ExprKind::Bad => return None,
             _ => {
-                report.say(&codes::BAD_TEXT, &node.name.at, "an action that is no variable");
+                report.say(&codes::BAD_TEXT, &node.name.at, say!("an action that is no variable"));
                 return None;
             }
         }
@@ -249,7 +249,7 @@ fn action(node: &ActionNode, report: &mut Report) -> Option<Action> {
     let time = match (qualifier.timed(), written) {
         (true, true) => Some(expression(&node.time, report)),
         (true, false) => {
-            let what = format!("the qualifier `{}` without its time", qualifier.name());
+            let what = say!("the qualifier `{}` without its time", qualifier.name());
             report.say(&codes::BAD_VALUE, &node.at, what);
             return None;
         }
@@ -266,7 +266,7 @@ fn receptivity(node: &TransitionNode, report: &mut Report) -> Expr {
             name(&[&clean(&text.text)], report.span(&text.at))
         }
         _ => {
-            report.say(&codes::BAD_TEXT, &node.at, "a transition without a condition");
+            report.say(&codes::BAD_TEXT, &node.at, say!("a transition without a condition"));
             return nodes::bad(at);
         }
     };
@@ -297,7 +297,7 @@ fn section<'a>(node: Node<'a, 'a>, report: &mut Report) -> Option<ChartItem> {
             (vec![assign(name(&[&title.text], at), value, at)], true)
         }
         (None, None) => {
-            let what = format!("the transition section `{}` is drawn, and not carried over", title.text);
+            let what = say!("the transition section `{}` is drawn, and not carried over", title.text);
             report.say(&codes::NOT_CARRIED, &range, what);
             return None;
         }

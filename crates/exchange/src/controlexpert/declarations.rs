@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use g7_model::codes;
-use g7_model::{Document, Name, Type, VarDecl, VarKind};
+use g7_model::{Document, Name, Said, Type, VarDecl, VarKind, say};
 use roxmltree::Node;
 
 use super::read::{kid, kids, line};
@@ -60,7 +60,7 @@ impl<'a> Data<'a> {
     fn variable(&mut self, node: Node<'a, 'a>, name: &str, depth: usize, report: &mut Report) {
         let at = attr::head(node);
         if self.vars.len() >= MOST || depth > DEEPEST {
-            report.element(&codes::TOO_LARGE, "variables", &at, "more variables than are read");
+            report.element(&codes::TOO_LARGE, "variables", &at, say!("more variables than are read"));
             return;
         }
         let ty = node.attribute("typeName").unwrap_or("BOOL");
@@ -115,7 +115,10 @@ fn presets(node: Node, name: &str, report: &mut Report) {
     for element in node.children().filter(|n| n.has_tag_name("instanceElementDesc")) {
         let member = nodes::line(element.attribute("name").unwrap_or(""));
         let value = line(element.children().find(|n| n.has_tag_name("value")));
-        let what = format!("`{name}.{member}` does not start with {value}; give it where `{name}` is called");
+        let what = say!(
+            "`{name}.{member}` does not start with {}; give it where `{name}` is called",
+            Said::foreign(value)
+        );
         report.say(&codes::DIFFERENT, &attr::head(element), what);
     }
 }
@@ -143,7 +146,7 @@ pub(super) fn members(
         let key = name.to_uppercase();
         let from = list.partition_point(|m| first(m) < key);
         let count = list.get(from..).unwrap_or(&[]).iter().take_while(|m| first(m) == key).count();
-        let what = format!(
+        let what = say!(
             "`{name}` is of the type `{ty}`, which is not in the file; {count} members that are named are taken for BOOL"
         );
         report.put(g7_model::Problem::new(&codes::DIFFERENT, decl.at.0, what));

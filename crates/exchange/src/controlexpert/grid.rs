@@ -8,7 +8,7 @@
 use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{codes, say};
 
 use super::read::{BarNode, Sheet, Spot};
 use crate::flow::{Ends, Flow, Node};
@@ -49,7 +49,9 @@ pub(super) fn ends(sheet: &Sheet, report: &mut Report) -> Vec<Ends> {
         let to = spots.object(&link.to.0, link.to.1);
         match (from, to) {
             (Some(from), Some(to)) => flow.line(from, to, &link.at, report),
-            _ => report.say(&codes::OPEN_LINK, &link.at, "a link from or to a cell where nothing stands"),
+            _ => {
+                report.say(&codes::OPEN_LINK, &link.at, say!("a link from or to a cell where nothing stands"))
+            }
         }
     }
     let places: Vec<Range<usize>> = sheet.transitions.iter().map(|t| t.at.clone()).collect();
@@ -79,7 +81,7 @@ fn columns(sheet: &Sheet, spots: &Spots, report: &mut Report) -> Columns {
                     &codes::TOO_LARGE,
                     "branch",
                     &bar.at,
-                    "the branches of the chart are too wide",
+                    say!("the branches of the chart are too wide"),
                 );
                 break;
             };
@@ -121,9 +123,9 @@ fn jumps(sheet: &Sheet, spots: &Spots, columns: &Columns, flow: &mut Flow, repor
         let from = above.filter(|(_, item)| item.below && jump.spot.1 - item.row <= 1);
         match (from, to) {
             (Some((_, item)), Some(step)) => flow.line(item.node, Node::Step(step), &jump.at, report),
-            (None, Some(_)) => report.say(&codes::OPEN_LINK, &jump.at, "a jump with nothing above it"),
+            (None, Some(_)) => report.say(&codes::OPEN_LINK, &jump.at, say!("a jump with nothing above it")),
             (_, None) => {
-                let what = format!("a jump to `{}`, a step that is not there", g7_iec::nodes::line(&jump.to));
+                let what = say!("a jump to `{}`, a step that is not there", g7_iec::nodes::line(&jump.to));
                 report.say(&codes::BAD_LINK, &jump.at, what);
             }
         }

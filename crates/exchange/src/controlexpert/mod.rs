@@ -21,7 +21,7 @@ mod dialect;
 mod grid;
 mod read;
 
-use g7_model::{Document, FileId, Problem, codes};
+use g7_model::{Document, FileId, Problem, codes, say};
 
 use g7_iec::report::Report;
 use g7_iec::xml;
@@ -51,7 +51,7 @@ pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
             let root = tree.root_element();
             let sheets = read::sheets(root, &mut report);
             if sheets.is_empty() {
-                let what = "there is no chart in the file: no `networkSFC`";
+                let what = say!("there is no chart in the file: no `networkSFC`");
                 report.say(&codes::NOT_JGRAFCHART, &xml::attr::head(root), what);
                 return Document::default();
             }

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 use roxmltree::Node;
 
 use g7_iec::nodes;
@@ -179,12 +179,7 @@ fn sheet<'a>(network: Node<'a, 'a>, report: &mut Report) -> Sheet<'a> {
             }
             "comment" => sheet.texts.push(line(Some(node))),
             tag => {
-                report.element(
-                    &codes::UNKNOWN_ELEMENT,
-                    tag,
-                    &at,
-                    &format!("the element `{tag}` is not known"),
-                );
+                report.element(&codes::UNKNOWN_ELEMENT, tag, &at, say!("the element `{tag}` is not known"));
             }
         }
     }
@@ -213,7 +208,7 @@ fn step(node: Node, spot: Spot, report: &mut Report) -> StepNode {
         Some("outStep") => StepSort::Out,
         Some("step") | None => StepSort::Plain,
         Some(other) => {
-            let what = format!("a step of the type `{other}`, which is not known; it is a plain step");
+            let what = say!("a step of the type `{other}`, which is not known; it is a plain step");
             report.say(&codes::UNKNOWN_ELEMENT, &at, what);
             StepSort::Plain
         }
@@ -223,12 +218,12 @@ fn step(node: Node, spot: Spot, report: &mut Report) -> StepNode {
     for literals in node.children().filter(|n| n.has_tag_name("literals")) {
         let set = |name: &str| literals.attribute_node(name).filter(|a| !a.value().trim().is_empty());
         delay = set("delay").map(|a| a.range_value());
-        for (word, what) in [("min", "shortest"), ("max", "longest")] {
+        for (word, what) in [("min", say!("shortest")), ("max", say!("longest"))] {
             if let Some(attribute) = set(word) {
-                let what = format!(
+                let what = say!(
                     "the {what} time of step `{}` is only watched, and left out: {}",
                     nodes::line(&name),
-                    nodes::line(attribute.value())
+                    Said::foreign(nodes::line(attribute.value()))
                 );
                 report.say(&codes::LEFT_OUT, &attribute.range_value(), what);
             }
@@ -290,7 +285,7 @@ fn link(node: Node, report: &mut Report) -> Option<LinkNode> {
     match (end("directedLinkSource"), end("directedLinkDestination")) {
         (Some(from), Some(to)) => Some(LinkNode { from, to, at }),
         _ => {
-            report.say(&codes::OPEN_LINK, &at, "a link without its ends");
+            report.say(&codes::OPEN_LINK, &at, say!("a link without its ends"));
             None
         }
     }

@@ -2,7 +2,7 @@
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, Expr, ExprKind, Path, Qualifier, Stmt, StmtKind, Target, Type, VarKind, Work,
+    Action, ActionKind, Expr, ExprKind, Path, Qualifier, Stmt, StmtKind, Target, Type, VarKind, Work, say,
 };
 
 use super::express::Express;
@@ -41,7 +41,7 @@ impl Texts<'_> {
     pub(super) fn condition(&mut self, sheet: usize, text: &Text, at: &std::ops::Range<usize>) -> Expr {
         let bad = Expr { kind: ExprKind::Bad, at: self.report.span(at).into() };
         if text.text.trim().is_empty() {
-            self.report.say(&codes::BAD_TEXT, at, "a transition without a condition");
+            self.report.say(&codes::BAD_TEXT, at, say!("a transition without a condition"));
             return bad;
         }
         if !self.fits(text) {
@@ -110,7 +110,7 @@ impl Texts<'_> {
     /// True if the text is not too long; otherwise reports it.
     fn fits(&mut self, text: &Text) -> bool {
         if text.text.len() > MOST_BYTES {
-            let what = format!("a text of {} bytes; at most {MOST_BYTES} are read", text.text.len());
+            let what = say!("a text of {} bytes; at most {MOST_BYTES} are read", text.text.len());
             self.report.say(&codes::TOO_LARGE, &text.at, what);
             return false;
         }
@@ -119,7 +119,7 @@ impl Texts<'_> {
                 &codes::TOO_LARGE,
                 "text",
                 &text.at,
-                "the file has too many actions and conditions",
+                say!("the file has too many actions and conditions"),
             );
         }
         self.left > 0
@@ -136,26 +136,27 @@ impl Texts<'_> {
 fn action(express: &mut Express, statement: &Statement, aborted: Option<&Expr>) -> Option<Action> {
     let at = express.span(&statement.at);
     if statement.letter == Letter::A && aborted.is_none() {
-        let what = "an abortive action runs only when an exception transition fires; none does here, and it is left out";
+        let what = say!(
+            "an abortive action runs only when an exception transition fires; none does here, and it is left out"
+        );
         express.report.say(&codes::LEFT_OUT, &express.text.place(&statement.at), what);
         return None;
     }
     let kind = match &statement.deed {
         Deed::Call(names, place) => {
-            let what =
-                format!("`{}` is a function or method that is not known here", shown(&names.join(".")));
+            let what = say!("`{}` is a function or method that is not known here", shown(&names.join(".")));
             express.report.say(&codes::UNKNOWN_FUNCTION, &express.text.place(place), what);
             return None;
         }
         Deed::Level(names, place) => {
             let (path, ty) = target(express, names, place)?;
             if ty != Type::Bool {
-                let what = format!("`N` needs a Boolean; `{}` is of type {ty}", shown(&names.join(".")));
+                let what = say!("`N` needs a Boolean; `{}` is of type {ty}", shown(&names.join(".")));
                 express.report.say(&codes::BAD_TEXT, &express.text.place(place), what);
                 return None;
             }
             if aborted.is_some() {
-                let what = format!(
+                let what = say!(
                     "`{}` goes off with its step; JGrafchart leaves it as it is when an exception transition fires",
                     shown(&names.join("."))
                 );
@@ -184,7 +185,7 @@ fn action(express: &mut Express, statement: &Statement, aborted: Option<&Expr>) 
                 Letter::P => ActionKind::EachScan { work, condition: None },
                 // `N v = e` is not a form of JGrafchart.
                 Letter::N => {
-                    let what = "`N` takes the name of an output only; `S`, `P` and `X` assign";
+                    let what = say!("`N` takes the name of an output only; `S`, `P` and `X` assign");
                     express.report.say(&codes::BAD_TEXT, &express.text.place(&statement.at), what);
                     return None;
                 }
@@ -206,7 +207,7 @@ fn target(express: &mut Express, names: &[String], place: &std::ops::Range<usize
             Some((express.var_path(sheet, var, express.span(place)), ty))
         }
         Meaning::Step(..) => {
-            let what = format!("`{}` cannot be written", shown(&names.join(".")));
+            let what = say!("`{}` cannot be written", shown(&names.join(".")));
             express.report.say(&codes::BAD_TEXT, &express.text.place(place), what);
             None
         }

@@ -3,7 +3,7 @@
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, Body, Chart, ChartItem, ChartKind, Document, Expr, Item, Layout, Name, Nanos, Order,
-    PlaceAt, Placed, Profile, ProfileName, Span, Step, StepKind, Transition, Type, VarDecl, VarKind,
+    PlaceAt, Placed, Profile, ProfileName, Span, Step, StepKind, Transition, Type, VarDecl, VarKind, say,
 };
 
 use super::actions::Texts;
@@ -56,8 +56,7 @@ fn scan(plan: &Plan, report: &mut Report) -> i64 {
     let speed = |s: &Sheet| s.speed.unwrap_or(DEFAULT_SCAN);
     let scan = tops().map(speed).min().unwrap_or(DEFAULT_SCAN);
     for sheet in tops().filter(|s| speed(s) % scan != 0) {
-        let what =
-            format!("this workspace runs every {} ms, which is no multiple of {scan} ms", speed(sheet));
+        let what = say!("this workspace runs every {} ms, which is no multiple of {scan} ms", speed(sheet));
         report.say(&codes::DIFFERENT, &sheet.at, what);
     }
     scan
@@ -174,7 +173,7 @@ impl Builder<'_> {
     fn kinds(&mut self, index: usize, sheet: &Sheet) -> Vec<StepKind> {
         let inside = sheet.kind == SheetKind::Macro;
         let expansion = self.is_expansion(index);
-        let mut ends = [(StepSort::Enter, "enter", None), (StepSort::Exit, "exit", None)];
+        let mut ends = [(StepSort::Enter, say!("enter"), None), (StepSort::Exit, say!("exit"), None)];
         let mut kinds = Vec::with_capacity(sheet.steps.len());
         for (number, step) in sheet.steps.iter().enumerate() {
             let mut kind = StepKind::Plain;
@@ -183,11 +182,11 @@ impl Builder<'_> {
             }
             for (sort, word, first) in ends.iter_mut().filter(|(sort, ..)| *sort == step.sort) {
                 if !inside {
-                    let what = format!("an {word} step outside a macro-step; it is a plain step");
+                    let what = say!("an {} step outside a macro-step; it is a plain step", &*word);
                     self.report.say(&codes::DIFFERENT, &step.at, what);
                 } else if first.replace(number).is_some() {
                     if *sort == StepSort::Enter {
-                        let what = "a second enter step; only one way in is carried over";
+                        let what = say!("a second enter step; only one way in is carried over");
                         self.report.say(&codes::NOT_CARRIED, &step.at, what);
                     }
                 } else if expansion {
@@ -195,8 +194,9 @@ impl Builder<'_> {
                 }
             }
             if inside && step.sort == StepSort::Initial {
-                let what =
-                    "an initial step inside a macro-step; the enter step is what a macro-step starts with";
+                let what = say!(
+                    "an initial step inside a macro-step; the enter step is what a macro-step starts with"
+                );
                 self.report.say(&codes::DIFFERENT, &step.at, what);
             }
             kinds.push(kind);
@@ -204,7 +204,7 @@ impl Builder<'_> {
         if let [(_, _, None), _] = ends
             && inside
         {
-            let what = format!("the macro-step `{}` has no enter step", self.names.chart(index));
+            let what = say!("the macro-step `{}` has no enter step", self.names.chart(index));
             self.report.say(&codes::BAD_MACRO, &sheet.at, what);
         }
         kinds
@@ -218,7 +218,7 @@ impl Builder<'_> {
                 StepKind::Macro(Name::new(self.names.chart(chart), at))
             }
             None => {
-                self.report.say(&codes::BAD_MACRO, &step.at, "a macro-step without a workspace inside");
+                self.report.say(&codes::BAD_MACRO, &step.at, say!("a macro-step without a workspace inside"));
                 StepKind::Plain
             }
         }
@@ -275,7 +275,7 @@ impl Builder<'_> {
         if !self.is_expansion(index) || sheet.steps.iter().any(|s| s.sort == StepSort::Exit) {
             return None;
         }
-        let what = format!(
+        let what = say!(
             "the macro-step `{}` has no exit step; it gets one that is never reached",
             self.names.chart(index)
         );

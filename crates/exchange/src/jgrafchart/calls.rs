@@ -6,7 +6,7 @@
 //! caller. A procedure that calls itself, and a procedure whose name is computed by a text, are not
 //! carried over.
 
-use g7_model::codes;
+use g7_model::{codes, say};
 use roxmltree::Node as Xml;
 
 use super::limits::MOST_BYTES;
@@ -30,7 +30,7 @@ pub(super) fn expand(reader: &mut Reader<'_, '_>) {
         let found = find(&reader.plan, &reader.procedures, caller);
         let known = found.and_then(|f| Some((f, reader.procedures.get(f)?.xml)));
         let Some((index, xml)) = known else {
-            let what = format!(
+            let what = say!(
                 "a `ProcedureStep` calls `{}`, which is the name of no procedure; it is read as a step that calls none",
                 shown(&caller.procedure.text)
             );
@@ -50,9 +50,9 @@ pub(super) fn expand(reader: &mut Reader<'_, '_>) {
         };
         if let Some(code) = refused {
             let what = if *code == codes::TOO_LARGE {
-                "the copies of procedures are too large; this call is left out"
+                say!("the copies of procedures are too large; this call is left out")
             } else {
-                "a procedure that calls itself; this call is left out"
+                say!("a procedure that calls itself; this call is left out")
             };
             let at = caller.at.clone();
             reader.report.say(code, &at, what);
@@ -63,7 +63,7 @@ pub(super) fn expand(reader: &mut Reader<'_, '_>) {
     }
     for (procedure, called) in reader.procedures.iter().zip(&called) {
         if !called {
-            let what = "a procedure that no step calls is left out";
+            let what = say!("a procedure that no step calls is left out");
             reader.report.element(&codes::LEFT_OUT, "GrafcetProcedure", &attr::head(procedure.xml), what);
         }
     }
@@ -120,7 +120,7 @@ fn copy<'x>(reader: &mut Reader<'_, 'x>, caller: usize, index: usize, xml: Xml<'
 /// Reads the parameters of a call.
 fn give(reader: &mut Reader<'_, '_>, inside: usize, caller: usize, text: Text) {
     if text.text.len() > MOST_BYTES {
-        let what = format!("a text of {} bytes; at most {MOST_BYTES} are read", text.text.len());
+        let what = say!("a text of {} bytes; at most {MOST_BYTES} are read", text.text.len());
         reader.report.say(&codes::TOO_LARGE, &text.at, what);
         return;
     }
@@ -132,7 +132,7 @@ fn give(reader: &mut Reader<'_, '_>, inside: usize, caller: usize, text: Text) {
     for parameter in parameters {
         let Some(sheet) = reader.plan.sheets.get_mut(inside) else { return };
         let Some(var) = sheet.vars.iter().position(|v| v.name.text == parameter.name) else {
-            let what = format!("the procedure has no variable `{}`", shown(&parameter.name));
+            let what = say!("the procedure has no variable `{}`", shown(&parameter.name));
             reader.report.say(&codes::UNKNOWN_OBJECT, &text.place(&parameter.at), what);
             continue;
         };
@@ -141,7 +141,7 @@ fn give(reader: &mut Reader<'_, '_>, inside: usize, caller: usize, text: Text) {
             continue;
         }
         let PhraseKind::Name(path) = parameter.value.kind else {
-            let what = "a parameter by reference that is no name";
+            let what = say!("a parameter by reference that is no name");
             reader.report.say(&codes::BAD_TEXT, &text.place(&parameter.at), what);
             continue;
         };

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Span, Type, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, Place, Said, Span, Type, UnaryOp, say};
 
 use super::naming::{Meaning, Names, Property};
 use super::phrase::{Binary, Phrase, PhraseKind, Unary};
@@ -83,10 +83,10 @@ impl Express<'_> {
         let what = match &meaning {
             Meaning::Var(..) | Meaning::Step(..) => return meaning,
             Meaning::Stranger(tag) => {
-                format!("`{}` is a `{tag}`, which is not carried over", shown(&path.join(".")))
+                say!("`{}` is a `{tag}`, which is not carried over", shown(&path.join(".")))
             }
-            Meaning::NoPart => format!("there is no `{}`", shown(&path.join("."))),
-            Meaning::Nothing => format!("`{}` is the name of nothing in the file", shown(&path.join("."))),
+            Meaning::NoPart => say!("there is no `{}`", shown(&path.join("."))),
+            Meaning::Nothing => say!("`{}` is the name of nothing in the file", shown(&path.join("."))),
         };
         let code = match meaning {
             Meaning::Stranger(_) => &codes::NOT_CARRIED,
@@ -161,7 +161,7 @@ impl Express<'_> {
             PhraseKind::Name(names) => self.name(names, phrase, wanted, at),
             PhraseKind::Call(names) => {
                 let what =
-                    format!("`{}` is a function or method that is not known here", shown(&names.join(".")));
+                    say!("`{}` is a function or method that is not known here", shown(&names.join(".")));
                 self.report.say(&codes::UNKNOWN_FUNCTION, &self.text.place(&phrase.at), what);
                 bad(at)
             }
@@ -188,7 +188,7 @@ impl Express<'_> {
 
     fn whole(&mut self, n: i64, wanted: Sort, phrase: &Phrase, at: Span) -> Typed {
         if i32::try_from(n).is_err() {
-            let what = format!("{n} is larger than JGrafchart's whole numbers, which have 32 bits");
+            let what = say!("{n} is larger than JGrafchart's whole numbers, which have 32 bits");
             self.report.say(&codes::BAD_VALUE, &self.text.place(&phrase.at), what);
             return bad(at);
         }
@@ -247,7 +247,7 @@ impl Express<'_> {
             Binary::Mod => (BinaryOp::Mod, Sort::Int, false),
         };
         if sort == Sort::Text && !logic && operator != Binary::Add {
-            let what = "texts can be joined by `+` and compared, nothing else";
+            let what = say!("texts can be joined by `+` and compared, nothing else");
             self.report.say(&codes::BAD_TEXT, &self.text.place(&(a.at.start..b.at.end)), what);
             return bad(at);
         }
@@ -318,15 +318,15 @@ impl Express<'_> {
             (Sort::Text, Sort::Bool) => equals(e, Literal::Str("1".into()), at),
             (Sort::Real, Sort::Int) => Typed { expr: call("TRUNC", vec![e], at), ty: Some(Type::Dint) },
             (Sort::Int | Sort::Real, Sort::Text) => {
-                self.loose(at, "a number becomes a text; its digits may differ from JGrafchart's");
+                self.loose(at, say!("a number becomes a text; its digits may differ from JGrafchart's"));
                 to("STRING", e, Type::String(0))
             }
             (Sort::Text, Sort::Int) => {
-                self.loose(at, "a text becomes a number; one that is no number stops the chart, not 0");
+                self.loose(at, say!("a text becomes a number; one that is no number stops the chart, not 0"));
                 to("DINT", e, Type::Dint)
             }
             (Sort::Text, Sort::Real) => {
-                self.loose(at, "a text becomes a number; one that is no number stops the chart, not 0");
+                self.loose(at, say!("a text becomes a number; one that is no number stops the chart, not 0"));
                 to("LREAL", e, Type::Lreal)
             }
             // A whole number is widened implicitly. Where two whole numbers meet, `as_real` has
@@ -335,7 +335,7 @@ impl Express<'_> {
         }
     }
 
-    fn loose(&mut self, at: Span, what: &str) {
+    fn loose(&mut self, at: Span, what: Said) {
         self.report.put(g7_model::Problem::new(&codes::DIFFERENT, at, what));
     }
 }

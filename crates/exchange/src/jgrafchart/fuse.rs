@@ -7,7 +7,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 
 use super::limits::MOST_BYTES;
 use super::phrase::{self, Letter};
@@ -34,17 +34,16 @@ pub(super) fn fuse(plan: &mut Plan, report: &mut Report) {
                 match by_name.get(name) {
                     Some(found) => members.extend(found.iter().filter(|n| seen.insert(**n))),
                     None if name.contains('.') => {
-                        trouble = Some(format!("`{}` is in another workspace", shown(name)));
+                        trouble = Some(say!("`{}` is in another workspace", shown(name)));
                     }
                     None => {
-                        let what = format!("`{}` is the name of no step in this workspace", shown(name));
+                        let what = say!("`{}` is the name of no step in this workspace", shown(name));
                         report.say(&codes::UNKNOWN_OBJECT, &text.at, what);
                     }
                 }
             }
             if let Some(what) = trouble.or_else(|| obstacle(sheet, &members, set.abortive)) {
-                let what =
-                    format!("a step fusion set, whose steps are one step, is not carried over: {what}");
+                let what = say!("a step fusion set, whose steps are one step, is not carried over: {what}");
                 report.say(&codes::NOT_CARRIED, &set.at, what);
                 continue;
             }
@@ -52,7 +51,7 @@ pub(super) fn fuse(plan: &mut Plan, report: &mut Report) {
                 report.say(
                     &codes::LEFT_OUT,
                     &set.at,
-                    "a step fusion set of less than two steps has no effect",
+                    say!("a step fusion set of less than two steps has no effect"),
                 );
                 continue;
             }
@@ -62,14 +61,14 @@ pub(super) fn fuse(plan: &mut Plan, report: &mut Report) {
 }
 
 /// The reason why steps cannot be merged.
-fn obstacle(sheet: &Sheet, members: &[usize], abortive: bool) -> Option<String> {
+fn obstacle(sheet: &Sheet, members: &[usize], abortive: bool) -> Option<Said> {
     for step in members.iter().filter_map(|m| sheet.steps.get(*m)) {
         let name = shown(&step.name.text);
         if !matches!(step.sort, StepSort::Plain | StepSort::Initial) {
-            return Some(format!("`{name}` is more than a plain step"));
+            return Some(say!("`{name}` is more than a plain step"));
         }
         if step.fused.is_some() || step.actions.len() > 1 {
-            return Some(format!("`{name}` is in a second set"));
+            return Some(say!("`{name}` is in a second set"));
         }
         let leaves = |text: &str| {
             if text.len() > MOST_BYTES {
@@ -80,7 +79,7 @@ fn obstacle(sheet: &Sheet, members: &[usize], abortive: bool) -> Option<String> 
         };
         // In JGrafchart leaving one step aborts the others, which then run `A`, not `X`.
         if abortive && step.actions.iter().any(|t| leaves(&t.text)) {
-            return Some(format!("it is abortive, and `{name}` has actions for its end"));
+            return Some(say!("it is abortive, and `{name}` has actions for its end"));
         }
     }
     None

@@ -13,7 +13,7 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp};
+use g7_model::{BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp, say};
 
 use super::lex::{Kind, tokens};
 use super::links::{Ends, exits};
@@ -199,7 +199,7 @@ fn differences(plan: &Plan, inside: usize, report: &mut Report) {
     let Some(sheet) = plan.sheets.get(inside) else { return };
     let name = shown(&sheet.name.text);
     if sheet.bars > 0 {
-        let what = format!(
+        let what = say!(
             "branches of `{name}` that are still active when its exit step is left end with it; JGrafchart goes on with them"
         );
         report.say(&codes::DIFFERENT, &sheet.at, what);
@@ -209,7 +209,7 @@ fn differences(plan: &Plan, inside: usize, report: &mut Report) {
     let texts = sheet.steps.iter().flat_map(|s| &s.actions);
     let inner: HashSet<String> = texts.flat_map(|t| words(&t.text)).collect();
     if node.actions.iter().flat_map(|t| words(&t.text)).any(|w| inner.contains(&w)) {
-        let what = format!(
+        let what = say!(
             "the actions of `{name}` run before those of the steps in it; in JGrafchart they come behind"
         );
         report.say(&codes::DIFFERENT, &node.at, what);

@@ -6,7 +6,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 
 use super::naming::Names;
 use super::sheet::{Node, Plan, Sheet, StepSort};
@@ -42,7 +42,7 @@ pub(super) fn ends(plan: &Plan, index: usize, names: &Names, report: &mut Report
     web.posts(plan, report);
     let all: Vec<Ends> = (0..sheet.transitions.len()).map(|t| web.ends_of(t, report)).collect();
     if web.work == 0 {
-        report.say(&codes::TOO_LARGE, &sheet.at, "the lines of this workspace are too many to follow");
+        report.say(&codes::TOO_LARGE, &sheet.at, say!("the lines of this workspace are too many to follow"));
     }
     all
 }
@@ -104,11 +104,11 @@ impl<'a> Web<'a> {
         let mut later = Vec::new();
         for link in &sheet.links {
             let (from, to) = (self.end(&link.from.text), self.end(&link.to.text));
-            let lost = [(&from, &link.from, "comes from"), (&to, &link.to, "leads to")];
+            let lost = [(&from, &link.from, say!("comes from")), (&to, &link.to, say!("leads to"))];
             for (end, text, way) in lost {
                 if end.is_none() {
                     let what =
-                        format!("a line {way} `{}`, which is nothing in this workspace", shown(&text.text));
+                        say!("a line {way} `{}`, which is nothing in this workspace", shown(&text.text));
                     let place = if text.text.is_empty() { &link.at } else { &text.at };
                     report.say(&codes::OPEN_LINK, place, what);
                 }
@@ -145,19 +145,20 @@ impl<'a> Web<'a> {
         let step = |end: &End| matches!(end.node, Node::Step(_));
         let exception = self.is_exception(to.node);
         let (code, what) = if to.port == "H" && step(to) {
-            let what = "a line to the history port of a macro-step; resuming it is not carried over";
+            let what = say!("a line to the history port of a macro-step; resuming it is not carried over");
             (&codes::NOT_CARRIED, what)
         } else if exception && !self.is_macro(from.node) {
-            let what = "a line to an exception transition from what is no macro-step";
+            let what = say!("a line to an exception transition from what is no macro-step");
             (&codes::BAD_LINK, what)
         } else if from.port == "E" && step(from) && !exception {
-            let what = "a line from the exception port of a macro-step to what is no exception transition";
+            let what =
+                say!("a line from the exception port of a macro-step to what is no exception transition");
             (&codes::BAD_LINK, what)
         } else if step(to) && !matches!(&*to.port, "" | "0" | "N") {
-            let what = "a line to a further port of a macro-step; only one way in is carried over";
+            let what = say!("a line to a further port of a macro-step; only one way in is carried over");
             (&codes::NOT_CARRIED, what)
         } else if step(from) && !exception && !self.has_way(from) {
-            (&codes::BAD_LINK, "a line from a port that the macro-step does not have")
+            (&codes::BAD_LINK, say!("a line from a port that the macro-step does not have"))
         } else {
             return false;
         };
@@ -198,32 +199,32 @@ impl<'a> Web<'a> {
         if !fits {
             let what = match (from, to) {
                 (Node::Step(_), Node::Step(_)) => {
-                    format!(
+                    say!(
                         "a line from {} to {} without a transition between",
                         self.called(from),
                         self.called(to)
                     )
                 }
                 (Node::Transition(_), Node::Transition(_)) => {
-                    "a line from a transition to a transition without a step between".to_string()
+                    say!("a line from a transition to a transition without a step between")
                 }
-                _ => format!("a line cannot lead from {} to {}", self.called(from), self.called(to)),
+                _ => say!("a line cannot lead from {} to {}", self.called(from), self.called(to)),
             };
             report.say(&codes::BAD_LINK, at, what);
         }
         fits
     }
 
-    fn called(&self, node: Node) -> String {
+    fn called(&self, node: Node) -> Said {
         match node {
             Node::Step(step) | Node::Way(step, _) => {
-                format!("step `{}`", shown(self.names.step(self.index, step)))
+                say!("step `{}`", shown(self.names.step(self.index, step)))
             }
-            Node::Transition(_) => "a transition".to_string(),
-            Node::Split(_) => "a parallel split".to_string(),
-            Node::Join(_) => "a parallel join".to_string(),
-            Node::PostIn(_) | Node::PostOut(_) => "a connection post".to_string(),
-            Node::Stranger => "an element that is not carried over".to_string(),
+            Node::Transition(_) => say!("a transition"),
+            Node::Split(_) => say!("a parallel split"),
+            Node::Join(_) => say!("a parallel join"),
+            Node::PostIn(_) | Node::PostOut(_) => say!("a connection post"),
+            Node::Stranger => say!("an element that is not carried over"),
         }
     }
 
@@ -255,10 +256,10 @@ impl<'a> Web<'a> {
                 continue;
             }
             if post.remote.contains('.') {
-                let what = format!("a connection post to `{}` in another workspace", shown(&post.remote));
+                let what = say!("a connection post to `{}` in another workspace", shown(&post.remote));
                 report.say(&codes::NOT_CARRIED, &post.at, what);
             } else {
-                let what = format!("the connection post `{}` has no other end", shown(&post.name));
+                let what = say!("the connection post `{}` has no other end", shown(&post.name));
                 report.say(&codes::OPEN_LINK, &post.at, what);
             }
         }
@@ -291,10 +292,10 @@ impl<'a> Web<'a> {
         let to: Vec<usize> = to.into_iter().map(|(step, _)| step).collect();
         let Some(node) = self.sheet.transitions.get(transition) else { return Ends::default() };
         let lost = match (from.is_empty() && !from_cut, to.is_empty() && !to_cut) {
-            (true, true) => "a transition without any step",
-            (true, false) => "a transition without a step before it; it is always enabled",
-            (false, true) => "a transition without a step behind it",
-            (false, false) => "",
+            (true, true) => say!("a transition without any step"),
+            (true, false) => say!("a transition without a step before it; it is always enabled"),
+            (false, true) => say!("a transition without a step behind it"),
+            (false, false) => Said::default(),
         };
         if !lost.is_empty() {
             report.say(&codes::OPEN_LINK, &node.at, lost);

@@ -8,7 +8,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::codes;
+use g7_model::{codes, say};
 
 use super::sheet::{Plan, Sheet, SheetKind, StepSort, name_place};
 use g7_iec::nodes::Taken;
@@ -215,7 +215,7 @@ pub(super) fn writable(name: &str) -> String {
 fn clean(name: &Text, at: &std::ops::Range<usize>, report: &mut Report) -> String {
     let text = writable(&name.text);
     if text != name.text {
-        let what = format!("a back-tick or line end in the name `{}` is written otherwise", shown(&text));
+        let what = say!("a back-tick or line end in the name `{}` is written otherwise", shown(&text));
         report.say(&codes::RENAMED, &name_place(name, at), what);
     }
     text
@@ -238,8 +238,7 @@ fn chart_names(plan: &Plan, report: &mut Report) -> Vec<String> {
                 // Macro-steps with the same name in different workspaces are allowed.
                 Some(outer) => wanted = format!("{outer}_{wanted}"),
                 None => {
-                    let what =
-                        format!("two workspaces are called `{}`; the second is renamed", shown(&wanted));
+                    let what = say!("two workspaces are called `{}`; the second is renamed", shown(&wanted));
                     report.say(&codes::RENAMED, &name_place(&sheet.name, &sheet.at), what);
                 }
             }
@@ -265,9 +264,9 @@ fn step_names(sheet: &Sheet, report: &mut Report) -> Vec<String> {
             continue;
         }
         if let Some(other) = first.get(step.name.text.as_str()) {
-            let what = format!("a second step is called `{}`; it is renamed", shown(&step.name.text));
+            let what = say!("a second step is called `{}`; it is renamed", shown(&step.name.text));
             let problem = g7_model::Problem::new(&codes::RENAMED, report.span(&step.name.at), what);
-            let there = "the first step of this name, which references mean".to_string();
+            let there = say!("the first step of this name, which references mean");
             report.put(problem.related(report.span(other), there));
         } else {
             first.insert(&step.name.text, &step.name.at);
@@ -292,10 +291,10 @@ fn variables(sheet: &Sheet, report: &mut Report) -> HashMap<String, usize> {
     for (index, var) in sheet.vars.iter().enumerate() {
         clean(&var.name, &var.at, report);
         if let Some(other) = map.get(&var.name.text) {
-            let what = format!("`{}` is declared twice in one workspace", shown(&var.name.text));
+            let what = say!("`{}` is declared twice in one workspace", shown(&var.name.text));
             let mut problem = g7_model::Problem::new(&codes::TWICE, report.span(&var.name.at), what);
             if let Some(first) = sheet.vars.get(*other) {
-                problem = problem.related(report.span(&first.name.at), "the first of this name");
+                problem = problem.related(report.span(&first.name.at), say!("the first of this name"));
             }
             report.put(problem);
         } else {

@@ -3,6 +3,7 @@
 //! The precedence is that of Java: `?:`, `|`, `&`, equality, comparison, sum, product, then the
 //! signs before an operand (`!`, `-`, `/` for a rising and `\` for a falling edge).
 
+use g7_model::{Said, say};
 use std::ops::Range;
 
 use super::lex::{Kind, Token, tokens};
@@ -101,7 +102,7 @@ pub(super) enum Deed {
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Fault {
     pub(super) at: Range<usize>,
-    pub(super) what: String,
+    pub(super) what: Said,
 }
 
 /// Parses a condition: one expression and nothing behind it (a `;` is allowed).
@@ -112,7 +113,7 @@ pub(super) fn condition(text: &str) -> Result<Phrase, Fault> {
     while reader.take(";") {}
     match reader.peek().kind {
         Kind::End => Ok(phrase),
-        _ => Err(reader.fault("the end of the condition")),
+        _ => Err(reader.fault(say!("the end of the condition"))),
     }
 }
 
@@ -165,23 +166,23 @@ impl Reader<'_> {
     }
 
     fn need(&mut self, sign: &str) -> Result<(), Fault> {
-        if self.take(sign) { Ok(()) } else { Err(self.fault(&format!("`{sign}`"))) }
+        if self.take(sign) { Ok(()) } else { Err(self.fault(say!("`{sign}`"))) }
     }
 
-    fn fault(&self, wanted: &str) -> Fault {
+    fn fault(&self, wanted: Said) -> Fault {
         let token = self.peek();
         let found = match &token.kind {
-            Kind::Name(name) => format!("`{name}`"),
-            Kind::Int(n) => format!("`{n}`"),
-            Kind::Real(n) => format!("`{n}`"),
-            Kind::Str(_) => "a text".to_string(),
-            Kind::Sign(sign) => format!("`{sign}`"),
-            Kind::Unclosed => "a text without its closing quote".to_string(),
-            Kind::Huge => "a number that is too large".to_string(),
-            Kind::Odd(c) => format!("`{}`", c.escape_default()),
-            Kind::End => "the end".to_string(),
+            Kind::Name(name) => say!("`{name}`"),
+            Kind::Int(n) => say!("`{n}`"),
+            Kind::Real(n) => say!("`{n}`"),
+            Kind::Str(_) => say!("a text"),
+            Kind::Sign(sign) => say!("`{sign}`"),
+            Kind::Unclosed => say!("a text without its closing quote"),
+            Kind::Huge => say!("a number that is too large"),
+            Kind::Odd(c) => say!("`{}`", c.escape_default()),
+            Kind::End => say!("the end"),
         };
-        Fault { at: token.at.clone(), what: format!("{wanted} was expected, not {found}") }
+        Fault { at: token.at.clone(), what: say!("{wanted} was expected, not {found}") }
     }
 
     /// Skips to the next `;`, or to the next line that begins with a letter.
@@ -217,7 +218,8 @@ impl Reader<'_> {
             let lone =
                 matches!(&self.peek().kind, Kind::Name(n) if matches!(&**n, "S" | "P" | "X" | "N" | "A"));
             self.next += usize::from(lone);
-            let wanted = if lone { "a name" } else { "`S`, `P`, `X`, `N` or `A` and then a name" };
+            let wanted =
+                if lone { say!("a name") } else { say!("`S`, `P`, `X`, `N` or `A` and then a name") };
             return Err(self.fault(wanted));
         };
         self.next += 1;
@@ -230,11 +232,11 @@ impl Reader<'_> {
         } else if letter == Letter::N {
             Deed::Level(target.0, target.1)
         } else {
-            return Err(self.fault("`=`"));
+            return Err(self.fault(say!("`=`")));
         };
         let at = start..self.end();
         let done = self.sign() == ";" || self.peek().kind == Kind::End || self.letter_ahead().is_some();
-        if done { Ok(Statement { letter, deed, at }) } else { Err(self.fault("`;`")) }
+        if done { Ok(Statement { letter, deed, at }) } else { Err(self.fault(say!("`;`"))) }
     }
 
     /// The end of the previous token.
@@ -246,14 +248,14 @@ impl Reader<'_> {
         let start = self.peek().at.start;
         let mut names = Vec::new();
         loop {
-            let Kind::Name(name) = &self.peek().kind else { return Err(self.fault("a name")) };
+            let Kind::Name(name) = &self.peek().kind else { return Err(self.fault(say!("a name"))) };
             names.push(name.clone());
             self.next += 1;
             if !self.take(".") {
                 return Ok((names, start..self.end()));
             }
             if names.len() >= usize::from(DEEPEST) {
-                return Err(self.fault("a shorter name"));
+                return Err(self.fault(say!("a shorter name")));
             }
         }
     }
@@ -282,7 +284,7 @@ impl Reader<'_> {
     }
 
     fn too_deep(&self) -> Fault {
-        let what = "the expression is nested too deeply or chained too long".to_string();
+        let what = say!("the expression is nested too deeply or chained too long");
         Fault { at: self.peek().at.clone(), what }
     }
 
@@ -349,7 +351,7 @@ impl Reader<'_> {
             Kind::Str(text) => PhraseKind::Str(text),
             // The letter of the next action follows, so this one has no end.
             Kind::Name(_) if self.letter_ahead().is_some() => {
-                return Err(self.fault("a name, a number or `(`"));
+                return Err(self.fault(say!("a name, a number or `(`")));
             }
             Kind::Name(_) => {
                 let (names, at) = self.name()?;
@@ -366,7 +368,7 @@ impl Reader<'_> {
                 inner.at = token.at.start..self.end();
                 return Ok(inner);
             }
-            _ => return Err(self.fault("a name, a number or `(`")),
+            _ => return Err(self.fault(say!("a name, a number or `(`"))),
         };
         self.next += 1;
         self.node(kind, token.at, 0)
@@ -432,15 +434,15 @@ impl Reader<'_> {
         let by_reference = match &self.peek().kind {
             Kind::Name(letter) if letter == "V" => false,
             Kind::Name(letter) if letter == "R" => true,
-            _ => return Err(self.fault("`V` or `R` and then a name")),
+            _ => return Err(self.fault(say!("`V` or `R` and then a name"))),
         };
         self.next += 1;
-        let Kind::Name(name) = self.peek().kind.clone() else { return Err(self.fault("a name")) };
+        let Kind::Name(name) = self.peek().kind.clone() else { return Err(self.fault(say!("a name"))) };
         self.next += 1;
         self.need("=")?;
         let value = self.expression()?;
         if self.sign() != ";" && self.peek().kind != Kind::End {
-            return Err(self.fault("`;`"));
+            return Err(self.fault(say!("`;`")));
         }
         Ok(Parameter { by_reference, name, value, at: start..self.end() })
     }

@@ -4,7 +4,7 @@ use std::collections::btree_map::Entry;
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Type, VarKind};
+use g7_model::{Said, Type, VarKind, say};
 use roxmltree::{Document, Node as Xml};
 
 use super::other_elements::{is_data, is_drawing};
@@ -45,7 +45,7 @@ pub(super) fn sheets<'r, 'x>(tree: &'x Document<'x>, report: &'r mut Report) -> 
             }
         }
         other => {
-            let what = format!("the first element is `{other}`; JGrafchart's is `GCDocument`");
+            let what = say!("the first element is `{other}`; JGrafchart's is `GCDocument`");
             reader.report.say(&codes::NOT_JGRAFCHART, &reader.plan.at, what);
         }
     }
@@ -92,7 +92,7 @@ impl<'x> Reader<'_, 'x> {
         sheet.speed = self.number::<i64>(xml, "threadSpeed").filter(|ms| {
             let fits = (1..=3_600_000).contains(ms);
             if !fits {
-                let what = format!("`threadSpeed` is {ms}; a scan takes 1 to 3600000 ms");
+                let what = say!("`threadSpeed` is {ms}; a scan takes 1 to 3600000 ms");
                 self.report.say(&codes::BAD_VALUE, &attr::head(xml), what);
             }
             fits
@@ -123,7 +123,7 @@ impl<'x> Reader<'_, 'x> {
             if child.is_element() {
                 self.element(child, sheet);
             } else if child.is_text() && child.text().is_some_and(|t| !t.trim().is_empty()) {
-                let what = "text between the elements has no meaning in a chart";
+                let what = say!("text between the elements has no meaning in a chart");
                 self.report.element(&codes::UNKNOWN_ELEMENT, "text", &child.range(), what);
             }
         }
@@ -145,8 +145,10 @@ impl<'x> Reader<'_, 'x> {
                 self.step(xml, sheet, StepSort::Macro(None));
             }
             "ProcessStep" => {
-                let what = "a `ProcessStep` starts a procedure and does not wait for it, any number of times; \
-                            it is read as a step that starts none";
+                let what = say!(
+                    "a `ProcessStep` starts a procedure and does not wait for it, any number of times; \
+                            it is read as a step that starts none"
+                );
                 self.not_carried(xml, what);
                 self.step(xml, sheet, StepSort::Plain);
             }
@@ -164,7 +166,7 @@ impl<'x> Reader<'_, 'x> {
                 let name = attr::text(xml, "name").unwrap_or_default().text;
                 let cycle = self.number::<i64>(xml, "scanCycle").filter(|n| (1..=1_000_000).contains(n));
                 if attr::text(xml, "enabled").is_some_and(|e| e.text == "0") {
-                    self.not_carried(xml, "a workspace object that stands still until it is enabled");
+                    self.not_carried(xml, say!("a workspace object that stands still until it is enabled"));
                 }
                 if let Some(index) = self.inner(xml, SheetKind::Object, sheet) {
                     self.with(index, |s| s.cycle = cycle.unwrap_or(1));
@@ -227,7 +229,7 @@ impl<'x> Reader<'_, 'x> {
         if let Entry::Vacant(place) = known.ids.entry(id.text.clone()) {
             place.insert(node);
         } else {
-            let what = format!("a second element has the id `{}`; lines lead to the first", shown(&id.text));
+            let what = say!("a second element has the id `{}`; lines lead to the first", shown(&id.text));
             self.report.say(&codes::BAD_LINK, &id.at, what);
         }
     }
@@ -314,9 +316,9 @@ impl<'x> Reader<'_, 'x> {
             "Real" => Type::Lreal,
             _ => Type::String(STRING_BYTES),
         };
-        let way = if kind == VarKind::Input { "an input" } else { "an output" };
-        let what = format!("a `{tag}` becomes {way} with its identifier as channel; the socket is not there");
-        self.report.element(&codes::DIFFERENT, tag, &attr::head(xml), &what);
+        let way = if kind == VarKind::Input { say!("an input") } else { say!("an output") };
+        let what = say!("a `{tag}` becomes {way} with its identifier as channel; the socket is not there");
+        self.report.element(&codes::DIFFERENT, tag, &attr::head(xml), what);
         let var = Var {
             name: attr::text(xml, "name").unwrap_or_default(),
             kind,
@@ -337,7 +339,7 @@ impl<'x> Reader<'_, 'x> {
         let inverted = tag.ends_with('1');
         let kind = if tag.contains("Out") { VarKind::Output } else { VarKind::Input };
         if attr::text(xml, "cyclic").is_some_and(|c| c.text == "0") {
-            let what = format!("a `{tag}` that is read only on demand; it is read in every scan");
+            let what = say!("a `{tag}` that is read only on demand; it is read in every scan");
             self.report.say(&codes::DIFFERENT, &attr::head(xml), what);
         }
         let var = Var {
@@ -377,7 +379,7 @@ impl<'x> Reader<'_, 'x> {
 
     fn declare(&mut self, var: Var, sheet: usize) {
         if var.name.text.trim().is_empty() {
-            let what = "a variable without a name; nothing can refer to it, so it is left out";
+            let what = say!("a variable without a name; nothing can refer to it, so it is left out");
             self.report.say(&codes::LEFT_OUT, &var.at, what);
         } else {
             self.with(sheet, |s| s.vars.push(var));
@@ -398,7 +400,7 @@ impl<'x> Reader<'_, 'x> {
             _ => None,
         };
         if value.is_none() {
-            let what = format!("`{}` is no value of type {ty}", shown(word));
+            let what = say!("`{}` is no value of type {ty}", shown(word));
             self.report.say(&codes::BAD_VALUE, &text.at, what);
         }
         value
@@ -415,35 +417,35 @@ impl<'x> Reader<'_, 'x> {
         }
         match tag {
             "GraphicalButton" | "AssignmentButton" | "ActionButton" => {
-                let what = format!("a `{tag}` is left out: nothing is set by a click on it");
-                self.left_out(xml, &what);
+                let what = say!("a `{tag}` is left out: nothing is set by a click on it");
+                self.left_out(xml, what);
             }
             _ if is_data(tag) => {
-                let what = format!("a `{tag}` is left out; each use of it is reported");
-                self.left_out(xml, &what);
+                let what = say!("a `{tag}` is left out; each use of it is reported");
+                self.left_out(xml, what);
             }
             _ if is_drawing(tag) => {
-                let what = format!("a `{tag}` is drawing only and left out");
-                self.left_out(xml, &what);
+                let what = say!("a `{tag}` is drawing only and left out");
+                self.left_out(xml, what);
             }
             _ => self.unknown(xml),
         }
     }
 
-    pub(super) fn not_carried(&mut self, xml: Xml<'x, 'x>, what: &str) {
+    pub(super) fn not_carried(&mut self, xml: Xml<'x, 'x>, what: Said) {
         self.put(xml, &codes::NOT_CARRIED, what);
     }
 
-    fn left_out(&mut self, xml: Xml<'x, 'x>, what: &str) {
+    fn left_out(&mut self, xml: Xml<'x, 'x>, what: Said) {
         self.put(xml, &codes::LEFT_OUT, what);
     }
 
     fn unknown(&mut self, xml: Xml<'x, 'x>) {
-        let what = format!("`{}` is no element of a chart that is known here", shown(xml.tag_name().name()));
-        self.put(xml, &codes::UNKNOWN_ELEMENT, &what);
+        let what = say!("`{}` is no element of a chart that is known here", shown(xml.tag_name().name()));
+        self.put(xml, &codes::UNKNOWN_ELEMENT, what);
     }
 
-    fn put(&mut self, xml: Xml<'x, 'x>, code: &'static codes::Code, what: &str) {
+    fn put(&mut self, xml: Xml<'x, 'x>, code: &'static codes::Code, what: Said) {
         let at = attr::head(xml);
         self.report.element(code, xml.tag_name().name(), &at, what);
         self.report.keep(xml.document().input_text().get(at).unwrap_or(""));
@@ -454,7 +456,7 @@ impl<'x> Reader<'_, 'x> {
         let text = attr::text(xml, name).filter(|t| !t.text.trim().is_empty())?;
         let number = text.text.trim().parse().ok();
         if number.is_none() {
-            let what = format!("`{name}` is `{}`, which is no number that fits here", shown(&text.text));
+            let what = say!("`{name}` is `{}`, which is no number that fits here", shown(&text.text));
             self.report.say(&codes::BAD_VALUE, &text.at, what);
         }
         number

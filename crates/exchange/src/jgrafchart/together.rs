@@ -10,7 +10,7 @@ use std::ops::Range;
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, ChartKind, Document, Item, Order, Path, Qualifier, Step, StepKind,
-    Target,
+    Target, say,
 };
 
 use g7_iec::report::{Report, shown};
@@ -35,7 +35,7 @@ pub(super) fn tell(document: &Document, report: &mut Report) {
                     w.at != at && (left == 0 || charts.may_meet(w.at, at))
                 };
                 if let Some(other) = earlier.iter().find(meets) {
-                    let what = format!(
+                    let what = say!(
                         "`{}` is also driven by `N` of step `{}`: JGrafchart 2.6.1 sets it FALSE when one of the \
                          steps ends, here it stays TRUE as long as one of them is active",
                         shown(&path.text()),

@@ -3,8 +3,8 @@
 use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{
-    Chart, ChartItem, Document, Item, Layout, Nanos, Path, Profile, ProfileName, Span, Stmt, Switch, Type,
-    VarDecl, VarKind, codes,
+    Chart, ChartItem, Document, Item, Layout, Nanos, Path, Profile, ProfileName, Said, Span, Stmt, Switch,
+    Type, VarDecl, VarKind, codes, say,
 };
 
 use super::chart::{self, Lines, Read, Xml, kid, kids};
@@ -22,7 +22,7 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
     let controller = if root.has_tag_name("Controller") { Some(root) } else { kid(root, "Controller") };
     let charts: Vec<Xml> = root.descendants().filter(|n| n.has_tag_name("SFCContent")).collect();
     if charts.is_empty() {
-        let what = "there is no routine in SFC in the file";
+        let what = say!("there is no routine in SFC in the file");
         report.say(&codes::NOT_JGRAFCHART, &attr::head(root), what);
         return Document::default();
     }
@@ -84,9 +84,8 @@ impl<'a> Scope<'a> {
         for routine in routines.into_iter().flat_map(|n| kids(n, "Routine")) {
             let name = routine.attribute("Name").unwrap_or("");
             if routine.attribute("Type") == Some("ST") && !self.called.contains(&name.to_uppercase()) {
-                let what =
-                    format!("the routine `{}` (ST) is left out, with what it writes", nodes::line(name));
-                report.element(&codes::LEFT_OUT, "routine ST", &attr::head(routine), &what);
+                let what = say!("the routine `{}` (ST) is left out, with what it writes", nodes::line(name));
+                report.element(&codes::LEFT_OUT, "routine ST", &attr::head(routine), what);
             }
         }
     }
@@ -148,8 +147,9 @@ fn switches(controller: Option<Xml>, report: &mut Report) -> Vec<Switch> {
         Some(a) if a.value() == "Programmatic" => {}
         Some(a) if a.value() == "AutoReset" => {
             switches.push(Switch::FinalScan(false));
-            let what =
-                "the last scan of a step resets what its actions set (automatic reset); there is none here";
+            let what = say!(
+                "the last scan of a step resets what its actions set (automatic reset); there is none here"
+            );
             report.say(&codes::DIFFERENT, &a.range_value(), what);
         }
         _ => switches.push(Switch::FinalScan(false)),
@@ -194,10 +194,10 @@ fn routines(program: Option<Xml>, report: &mut Report) -> HashMap<String, Vec<St
                 found.insert(name.to_uppercase(), Lines::of(Some(routine)).statements(&mut silent));
             }
             ty => {
-                let ty = ty.unwrap_or("?");
+                let ty = Said::foreign(ty.unwrap_or("?"));
                 let what =
-                    format!("the routine `{}` ({ty}) is left out, with what it writes", nodes::line(name));
-                report.element(&codes::LEFT_OUT, &format!("routine {ty}"), &attr::head(routine), &what);
+                    say!("the routine `{}` ({ty}) is left out, with what it writes", nodes::line(name));
+                report.element(&codes::LEFT_OUT, &format!("routine {ty}"), &attr::head(routine), what);
             }
         }
     }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use g7_model::codes;
 use g7_model::{
     Action, Body, Chart, ChartItem, ChartKind, Expr, Layout, Name, NamedAction, Nanos, PlaceAt, Placed,
-    Qualifier, Span, Step, Stmt, Target,
+    Qualifier, Span, Step, Stmt, Target, say,
 };
 use roxmltree::Node as Element;
 
@@ -134,7 +134,8 @@ pub(super) fn read(content: Xml, title: &str, presets: &mut Presets, report: &mu
             reader.number(leg, Node::Bar(index), report);
         }
         if branch.attribute("Priority").is_some_and(|p| p != "Default") {
-            let what = "priorities of the author's own in a branch; here the branches go from left to right";
+            let what =
+                say!("priorities of the author's own in a branch; here the branches go from left to right");
             report.say(&codes::DIFFERENT, &attr::head(branch), what);
         }
     }
@@ -144,14 +145,14 @@ pub(super) fn read(content: Xml, title: &str, presets: &mut Presets, report: &mu
             "Step" | "Stop" | "Transition" | "Branch" | "DirectedLink" | "Attachment" => {}
             "TextBox" => texts.push(nodes::line(&attr::content(node).text)),
             "SbrRet" => {
-                let what = "a subroutine's entry and return; the chart runs by itself here";
+                let what = say!("a subroutine's entry and return; the chart runs by itself here");
                 report.say(&codes::NOT_CARRIED, &attr::head(node), what);
             }
             tag => report.element(
                 &codes::UNKNOWN_ELEMENT,
                 tag,
                 &attr::head(node),
-                &format!("the element `{tag}` is not known"),
+                say!("the element `{tag}` is not known"),
             ),
         }
     }
@@ -169,7 +170,7 @@ pub(super) fn read(content: Xml, title: &str, presets: &mut Presets, report: &mu
         let span = report.span(&attr::head(*node));
         let lines = Lines::of(kid(*node, "Condition"));
         let receptivity = if lines.is_empty() {
-            report.say(&codes::BAD_TEXT, &attr::head(*node), "a transition without a condition");
+            report.say(&codes::BAD_TEXT, &attr::head(*node), say!("a transition without a condition"));
             nodes::bad(span)
         } else {
             lines.expression(report)
@@ -212,7 +213,7 @@ impl Reader {
     fn number(&mut self, node: Xml, what: Node, report: &mut Report) {
         let number = node.attribute("ID").unwrap_or("").to_string();
         if self.numbers.insert(number, what).is_some() {
-            report.say(&codes::TWICE, &attr::head(node), "a second object of this number");
+            report.say(&codes::TWICE, &attr::head(node), say!("a second object of this number"));
         }
     }
 
@@ -228,7 +229,7 @@ impl Reader {
             let find = |name: &str| link.attribute(name).and_then(|n| self.numbers.get(n)).copied();
             match (find("FromID"), find("ToID")) {
                 (Some(from), Some(to)) => flow.line(from, to, &at, report),
-                _ => report.say(&codes::BAD_LINK, &at, "a link from or to an object that is not there"),
+                _ => report.say(&codes::BAD_LINK, &at, say!("a link from or to an object that is not there")),
             }
         }
         flow
@@ -251,7 +252,7 @@ impl Reader {
         let wanted = std::mem::take(&mut own);
         own = taken.give(&wanted);
         if own != wanted {
-            report.say(&codes::RENAMED, &range, format!("a second step `{wanted}`; it is called `{own}`"));
+            report.say(&codes::RENAMED, &range, say!("a second step `{wanted}`; it is called `{own}`"));
         }
         if let Some(ms) = milliseconds(node, "Preset") {
             presets.steps.insert(own.to_uppercase(), ms);
@@ -280,11 +281,7 @@ impl Reader {
         let at = report.span(&range);
         let word = node.attribute("Qualifier").unwrap_or("NonStored");
         let Some(qualifier) = qualifier(word) else {
-            report.say(
-                &codes::BAD_VALUE,
-                &range,
-                format!("the qualifier `{}` is not known", nodes::line(word)),
-            );
+            report.say(&codes::BAD_VALUE, &range, say!("the qualifier `{}` is not known", nodes::line(word)));
             return None;
         };
         let own = operand(node);
@@ -292,7 +289,11 @@ impl Reader {
         let ms = milliseconds(node, "Preset").or_else(|| presets.actions.get(&own.to_uppercase()).copied());
         let time = qualifier.timed().then(|| nodes::time(Nanos::from_millis(ms.unwrap_or(0)), at));
         if qualifier.timed() && node.attribute("PresetUsesExpr").is_some_and(|w| w == "true") {
-            report.say(&codes::NOT_CARRIED, &range, "a time that is an expression; it is constant here");
+            report.say(
+                &codes::NOT_CARRIED,
+                &range,
+                say!("a time that is an expression; it is constant here"),
+            );
         }
         if node.attribute("IsBoolean").is_some_and(|w| w == "true") {
             let flag = Name::new(format!("{own}.Q"), at);
@@ -307,7 +308,7 @@ impl Reader {
                 .flat_map(|n| n.children())
                 .filter(|n| n.is_element() && !n.has_tag_name("STContent"))
             {
-                let what = format!("`{}` in an action has no counterpart", other.tag_name().name());
+                let what = say!("`{}` in an action has no counterpart", other.tag_name().name());
                 report.say(&codes::NOT_CARRIED, &attr::head(other), what);
             }
             let statements = Lines::of(body).statements(report);

@@ -3,7 +3,7 @@
 use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
-use g7_model::{BinaryOp, Expr, ExprKind, Nanos, Path, Span, Stmt, StmtKind, codes};
+use g7_model::{BinaryOp, Expr, ExprKind, Nanos, Path, Span, Stmt, StmtKind, codes, say};
 
 use g7_iec::nodes::{self, binary, call, int, name};
 use g7_iec::report::Report;
@@ -23,7 +23,8 @@ pub(super) fn retentive(
     report: &mut Report,
 ) -> String {
     if let Some(found) = text.find("[:=]") {
-        let what = "`[:=]` takes its value back only in the last scan with automatic reset; it is `:=` here";
+        let what =
+            say!("`[:=]` takes its value back only in the last scan with automatic reset; it is `:=` here");
         report.element(&codes::DIFFERENT, "[:=]", &place(found..found + 4), what);
     }
     text.replace("[:=]", " := ")
@@ -99,7 +100,7 @@ impl Words<'_, '_> {
             "DN" => Some(binary(BinaryOp::Ge, time(), nodes::time(Nanos::from_millis(preset), at), at)),
             "PRE" => Some(int(preset.into(), at)),
             other => {
-                let what = format!("`{}.{other}` of a step has no counterpart", step.text);
+                let what = say!("`{}.{other}` of a step has no counterpart", step.text);
                 self.report.say(&codes::NOT_CARRIED, &Self::range(at), what);
                 Some(nodes::bad(at))
             }
@@ -125,8 +126,7 @@ impl Visitor for Words<'_, '_> {
                 let ExprKind::Path(path) = &target.kind else { return };
                 let [step, member] = path.names.as_slice() else { return };
                 if self.presets.steps.contains_key(&step.text.to_uppercase()) {
-                    let what =
-                        format!("writing `{}.{}` of a step has no counterpart", step.text, member.text);
+                    let what = say!("writing `{}.{}` of a step has no counterpart", step.text, member.text);
                     self.report.say(&codes::NOT_CARRIED, &Self::range(at), what);
                     stmt.kind = nothing(at);
                 }
@@ -148,7 +148,7 @@ impl Visitor for Words<'_, '_> {
                     stmt.kind = StmtKind::If(vec![(nodes::boolean(true, at), body)], Vec::new());
                     return;
                 }
-                let what = format!("`{text}({})` has no counterpart", routine.unwrap_or_default());
+                let what = say!("`{text}({})` has no counterpart", routine.unwrap_or_default());
                 self.report.say(&codes::NOT_CARRIED, &Self::range(at), what);
                 stmt.kind = nothing(at);
             }

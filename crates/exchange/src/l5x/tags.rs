@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Expr, Name, Type, VarDecl, VarKind};
+use g7_model::{Expr, Name, Type, VarDecl, VarKind, say};
 
 use super::chart::{Xml, description, kid, kids};
 use g7_iec::nodes;
@@ -80,7 +80,7 @@ impl<'a> Tags<'a> {
             Some(ty) => decl.ty = ty,
             None => {
                 let name = nodes::line(tag.attribute("DataType").unwrap_or(""));
-                let what = format!("`{text}`: `{name}` has no counterpart here, it is taken for BOOL");
+                let what = say!("`{text}`: `{name}` has no counterpart here, it is taken for BOOL");
                 report.say(&codes::DIFFERENT, &range, what);
             }
         }

@@ -4,7 +4,9 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Action, ActionKind, Expr, ExprKind, Path, Qualifier, Span, Stmt, StmtKind, Target, UnaryOp};
+use g7_model::{
+    Action, ActionKind, Expr, ExprKind, Path, Qualifier, Span, Stmt, StmtKind, Target, UnaryOp, say,
+};
 
 use super::network::symbol;
 use super::read::Xml;
@@ -167,7 +169,7 @@ fn action(node: Xml, guards: &Guards, report: &mut Report) -> Option<Action> {
         "D" => Qualifier::D,
         "L" => Qualifier::L,
         other => {
-            let what = format!("the qualifier `{}` of an action has no counterpart", nodes::line(other));
+            let what = say!("the qualifier `{}` of an action has no counterpart", nodes::line(other));
             report.say(&codes::NOT_CARRIED, &range, what);
             return None;
         }
@@ -180,7 +182,7 @@ fn action(node: Xml, guards: &Guards, report: &mut Report) -> Option<Action> {
     let kind = match deed {
         Deed::Variable(path, time) => {
             if kind.timed() && time.is_none() {
-                let what = format!("the qualifier `{}` without its time", kind.name());
+                let what = say!("the qualifier `{}` without its time", kind.name());
                 report.say(&codes::BAD_VALUE, &range, what);
                 return None;
             }
@@ -219,7 +221,7 @@ fn deed(words: &Words, kind: Qualifier, range: &Range<usize>, report: &mut Repor
         ExprKind::Path(path) => Some(Deed::Variable(path, time)),
         ExprKind::Bad => None,
         _ => {
-            report.say(&codes::BAD_TEXT, range, "an action that is no variable and no assignment");
+            report.say(&codes::BAD_TEXT, range, say!("an action that is no variable and no assignment"));
             None
         }
     }
@@ -244,12 +246,12 @@ fn on_event(
                 report.say(
                     &codes::NOT_CARRIED,
                     range,
-                    "an action with an event and a time has no counterpart",
+                    say!("an action with an event and a time has no counterpart"),
                 );
                 return None;
             }
             if kind == Qualifier::N {
-                let what = "`N` with an event: the variable stays TRUE here, one scan only in GRAPH";
+                let what = say!("`N` with an event: the variable stays TRUE here, one scan only in GRAPH");
                 report.say(&codes::DIFFERENT, range, what);
             }
             let target = nodes::expr(ExprKind::Path(path), at);
@@ -270,7 +272,7 @@ fn on_event(
         "L1" => edge(&guards.interlock, UnaryOp::Fall),
         "L0" => edge(&guards.interlock, UnaryOp::Rise),
         other => {
-            let what = format!("the event `{}` has no counterpart", nodes::line(other));
+            let what = say!("the event `{}` has no counterpart", nodes::line(other));
             report.say(&codes::NOT_CARRIED, range, what);
             return None;
         }
@@ -278,7 +280,7 @@ fn on_event(
     match event {
         Some(event) => Some(Action { kind: ActionKind::OnEvent { event, work }, at: at.into() }),
         None => {
-            let what = "an action that waits for the supervision or interlock of a step that has none";
+            let what = say!("an action that waits for the supervision or interlock of a step that has none");
             report.say(&codes::LEFT_OUT, range, what);
             None
         }

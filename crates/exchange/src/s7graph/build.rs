@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use g7_model::{
     Body, Chart, ChartItem, ChartKind, Document, Expr, Item, Name, Path, Profile, ProfileName, Span, Stmt,
-    Switch, Type, VarDecl, VarKind, codes,
+    Switch, Type, VarDecl, VarKind, codes, say,
 };
 
 use super::actions::{Guards, actions};
@@ -96,7 +96,7 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
         items.extend(interface(*block, &mut left_out, report).into_iter().map(Item::Var));
     }
     if let Some((range, _)) = left_out.first() {
-        let what = format!(
+        let what = say!(
             "{} parameters of the sequencer itself (modes, acknowledgement, display) are left out; it runs in automatic mode",
             left_out.len()
         );
@@ -104,7 +104,7 @@ pub(super) fn document(root: Xml, report: &mut Report) -> Document {
     }
     for unit in root.descendants().filter(|n| n.tag_name().name() == "SW.Blocks.CompileUnit") {
         if !unit.descendants().any(|n| n.tag_name().name() == "Graph") {
-            let what = "a network of a block in another language is left out";
+            let what = say!("a network of a block in another language is left out");
             report.element(&codes::LEFT_OUT, "CompileUnit", &attr::head(unit), what);
         }
     }
@@ -199,7 +199,7 @@ fn declare(
         report.say(
             &codes::LEFT_OUT,
             &range,
-            format!("`{name}` is of the type `{}`, which is not known", nodes::line(ty)),
+            say!("`{name}` is of the type `{}`, which is not known", nodes::line(ty)),
         );
         return;
     };
@@ -289,7 +289,7 @@ fn step_names(sequence: &Sequence, report: &mut Report) -> Vec<String> {
     for step in &sequence.steps {
         let own = taken.give(&step.name);
         if own != step.name {
-            let what = format!("a second step `{}`; it is called `{own}`", step.name);
+            let what = say!("a second step `{}`; it is called `{own}`", step.name);
             report.say(&codes::RENAMED, &step.at, what);
         }
         names.push(own);
@@ -316,7 +316,8 @@ fn guards(node: &StepNode, report: &mut Report) -> Guards {
         };
     }
     if guards.supervision.is_some() {
-        let what = "the supervision of a step holds its transitions back; here no acknowledgement is needed";
+        let what =
+            say!("the supervision of a step holds its transitions back; here no acknowledgement is needed");
         report.element(&codes::DIFFERENT, "Supervision", &node.at, what);
     }
     guards
@@ -329,7 +330,7 @@ fn times(node: &StepNode, report: &mut Report) {
         word.chars().any(|c| ('1'..='9').contains(&c)).then(|| word.to_string())
     };
     if set("MaximumStepTime").or_else(|| set("WarningTime")).is_some() {
-        let what = "the longest time and the warning time of a step are only watched, and left out";
+        let what = say!("the longest time and the warning time of a step are only watched, and left out");
         report.element(&codes::LEFT_OUT, "step time", &node.at, what);
     }
 }

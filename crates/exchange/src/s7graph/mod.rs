@@ -18,7 +18,7 @@ mod build;
 mod network;
 mod read;
 
-use g7_model::{Document, FileId, Problem, codes};
+use g7_model::{Document, FileId, Problem, codes, say};
 
 use g7_iec::report::Report;
 use g7_iec::xml;
@@ -41,7 +41,7 @@ pub(crate) fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
         .map(|tree| {
             let root = tree.root_element();
             if !root.descendants().any(|n| n.tag_name().name() == "Graph") {
-                let what = "there is no block in the language GRAPH in the file";
+                let what = say!("there is no block in the language GRAPH in the file");
                 report.say(&codes::NOT_JGRAFCHART, &xml::attr::head(root), what);
                 return Document::default();
             }

@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{BinaryOp, Expr, ExprKind, Span, Stmt, UnaryOp};
+use g7_model::{BinaryOp, Expr, ExprKind, Span, Stmt, UnaryOp, say};
 
 use super::read::{Xml, kid, kids};
 use g7_iec::nodes::{self, and, assign, binary, boolean, not, or, when};
@@ -44,7 +44,11 @@ pub(super) fn network<'a>(node: Xml<'a>, report: &mut Report) -> Option<Network<
     if let Some(other) =
         node.children().find(|n| matches!(n.tag_name().name(), "StatementList" | "StructuredText"))
     {
-        report.say(&codes::NOT_CARRIED, &attr::head(other), "a network in STL or SCL is not carried over");
+        report.say(
+            &codes::NOT_CARRIED,
+            &attr::head(other),
+            say!("a network in STL or SCL is not carried over"),
+        );
         return None;
     }
     let net = kid(node, "FlgNet")?;
@@ -172,7 +176,7 @@ impl<'a> Network<'a> {
     }
 
     fn strange(&self, node: Xml, kind: &str, report: &mut Report) {
-        let what = format!("`{}` in a network has no counterpart", nodes::line(kind));
+        let what = say!("`{}` in a network has no counterpart", nodes::line(kind));
         report.say(&codes::NOT_CARRIED, &attr::head(node), what);
     }
 
@@ -182,7 +186,7 @@ impl<'a> Network<'a> {
             Some(Source::Access(access)) => Some(self.access(access, report)),
             _ => {
                 let at = self.parts.get(uid).map_or(self.at.clone(), |n| attr::head(*n));
-                report.say(&codes::OPEN_LINK, &at, "a contact or coil without its variable");
+                report.say(&codes::OPEN_LINK, &at, say!("a contact or coil without its variable"));
                 None
             }
         }
@@ -195,7 +199,7 @@ impl<'a> Network<'a> {
         let at = report.span(&range);
         if self.left == 0 || depth > DEEPEST {
             let code = if depth > DEEPEST { &codes::TOO_DEEP } else { &codes::TOO_LARGE };
-            report.element(code, "network", &range, "a network with too many parts on one way");
+            report.element(code, "network", &range, say!("a network with too many parts on one way"));
             return nodes::bad(at);
         }
         self.left -= 1;
@@ -354,7 +358,7 @@ pub(super) fn access(node: Xml, report: &mut Report) -> Expr {
         .nth(1)
         .filter(|n| kid(*n, "Symbol").is_some());
     if let Some(index) = variable_index {
-        let what = "an element of an array by a variable index; there are no arrays";
+        let what = say!("an element of an array by a variable index; there are no arrays");
         report.say(&codes::NOT_CARRIED, &attr::head(index), what);
         return nodes::bad(at);
     }
@@ -373,7 +377,7 @@ pub(super) fn access(node: Xml, report: &mut Report) -> Expr {
     {
         return nodes::expr(ExprKind::Path(nodes::path(&[&name], at)), at);
     }
-    report.say(&codes::NOT_CARRIED, &range, "an operand that has no counterpart");
+    report.say(&codes::NOT_CARRIED, &range, say!("an operand that has no counterpart"));
     nodes::bad(at)
 }
 

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{codes, say};
 use roxmltree::Node as Element;
 
 use crate::flow::{Ends, Flow, Node};
@@ -64,7 +64,7 @@ pub(super) fn sequence<'a>(node: Xml<'a>, report: &mut Report) -> Sequence<'a> {
         let name = nodes::line(&step.attribute("Name").unwrap_or("").replace('`', "'"));
         let name = if name.is_empty() { number.clone() } else { name };
         if numbers.insert(("Step", number), Node::Step(steps.len())).is_some() {
-            report.say(&codes::TWICE, &at, "a second step of this number");
+            report.say(&codes::TWICE, &at, say!("a second step of this number"));
         }
         let initial = step.attribute("Init").is_some_and(|w| w == "true");
         steps.push(StepNode { name, initial, node: step, at });
@@ -74,7 +74,7 @@ pub(super) fn sequence<'a>(node: Xml<'a>, report: &mut Report) -> Sequence<'a> {
         let at = attr::head(transition);
         let number = transition.attribute("Number").unwrap_or("").to_string();
         if numbers.insert(("Transition", number), Node::Transition(transitions.len())).is_some() {
-            report.say(&codes::TWICE, &at, "a second transition of this number");
+            report.say(&codes::TWICE, &at, say!("a second transition of this number"));
         }
         let label = nodes::line(&transition.attribute("Name").unwrap_or("").replace('`', "'"));
         transitions.push(TransitionNode { label, node: transition, ends: Ends::default(), at });
@@ -121,7 +121,7 @@ fn connections(node: Xml, numbers: &HashMap<(&'static str, String), Node>, repor
             numbers.get(&(kind, number)).copied()
         };
         let (Some(from), Some(to)) = (end("NodeFrom"), end("NodeTo")) else {
-            report.say(&codes::OPEN_LINK, &at, "a connection without its ends");
+            report.say(&codes::OPEN_LINK, &at, say!("a connection without its ends"));
             continue;
         };
         // The end of a sequence: no step is active afterwards.
@@ -130,7 +130,9 @@ fn connections(node: Xml, numbers: &HashMap<(&'static str, String), Node>, repor
         }
         match (find(from), find(to)) {
             (Some(from), Some(to)) => flow.line(from, to, &at, report),
-            _ => report.say(&codes::BAD_LINK, &at, "a connection from or to something that is not there"),
+            _ => {
+                report.say(&codes::BAD_LINK, &at, say!("a connection from or to something that is not there"))
+            }
         }
     }
     flow

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::{
-    Action, ActionKind, Expr, ExprKind, Literal, Name, Nanos, Order, Path, Qualifier, Situation, Span, Stmt,
-    StmtKind, Target, Work, codes,
+    Action, ActionKind, Expr, ExprKind, Literal, Name, Nanos, Order, Path, Qualifier, Said, Situation, Span,
+    Stmt, StmtKind, Target, Work, codes, say,
 };
 
 use super::naming::Names;
@@ -32,7 +32,7 @@ pub(super) fn of_steps(plan: &Plan, names: &Names, left: &mut usize, report: &mu
     }
     for (number, xml) in plan.actions.iter().enumerate() {
         if !used.contains(&number) {
-            let what = "an action that no step has; it is left out";
+            let what = say!("an action that no step has; it is left out");
             report.element(&codes::LEFT_OUT, "actionTypes", &attr::head(*xml), what);
         }
     }
@@ -43,19 +43,19 @@ pub(super) fn of_steps(plan: &Plan, names: &Names, left: &mut usize, report: &mu
 fn ends(plan: &Plan, link: Xml, report: &mut Report) -> Option<((usize, usize), usize)> {
     for name in ["step", "actionType"] {
         if link.attribute(name).is_none() {
-            let what = format!("a link of an action without its `{name}`; it is left out");
+            let what = say!("a link of an action without its `{name}`; it is left out");
             report.say(&codes::OPEN_LINK, &attr::head(link), what);
             return None;
         }
     }
     let (step, at) = plan.thing(link, "step", report)?;
     let Thing::Step(sheet, step) = step else {
-        report.say(&codes::UNKNOWN_OBJECT, &at, "the `step` of this link is no step");
+        report.say(&codes::UNKNOWN_OBJECT, &at, say!("the `step` of this link is no step"));
         return None;
     };
     let (action, at) = plan.thing(link, "actionType", report)?;
     let Thing::Action(action) = action else {
-        report.say(&codes::UNKNOWN_OBJECT, &at, "the `actionType` of this link is no action");
+        report.say(&codes::UNKNOWN_OBJECT, &at, say!("the `actionType` of this link is no action"));
         return None;
     };
     Some(((sheet, step), action))
@@ -75,7 +75,7 @@ impl<'a> Reader<'_, 'a> {
             Some("ForcingOrder") => self.forcing(xml)?,
             other => {
                 let class = shown(other.unwrap_or(""));
-                let what = format!("an action of the class `{class}`, which the meta-model does not have");
+                let what = say!("an action of the class `{class}`, which the meta-model does not have");
                 self.terms.report.say(&codes::NOT_CARRIED, &at, what);
                 return None;
             }
@@ -90,23 +90,21 @@ impl<'a> Reader<'_, 'a> {
         let condition = match xml.attribute("continuousActionType").unwrap_or("continuousAction") {
             "continuousAction" => {
                 if term.is_some() {
-                    let what = "the term has no effect: `continuousActionType` is continuousAction";
+                    let what = say!("the term has no effect: `continuousActionType` is continuousAction");
                     self.terms.report.say(&codes::LEFT_OUT, &at, what);
                 }
                 None
             }
             "assignationCondition" => {
                 if term.is_none() {
-                    let what = "an action with an assignation condition that is not there; it has none";
+                    let what = say!("an action with an assignation condition that is not there; it has none");
                     self.terms.report.say(&codes::DIFFERENT, &at, what);
                 }
                 term
             }
             other => {
-                let what = format!(
-                    "`continuousActionType` is `{}`, which the meta-model does not have",
-                    shown(other)
-                );
+                let what =
+                    say!("`continuousActionType` is `{}`, which the meta-model does not have", shown(other));
                 self.terms.report.say(&codes::BAD_VALUE, &at, what);
                 None
             }
@@ -136,7 +134,7 @@ impl<'a> Reader<'_, 'a> {
         let span = self.terms.report.span(&at);
         let target = self.variable(xml);
         let value = self.terms.of(xml, "value").unwrap_or_else(|| {
-            self.terms.report.say(&codes::BAD_TEXT, &at, "a stored action without a value");
+            self.terms.report.say(&codes::BAD_TEXT, &at, say!("a stored action without a value"));
             bad(span)
         });
         let statement = Stmt { kind: StmtKind::Assign { target, value }, at: span.into() };
@@ -150,7 +148,7 @@ impl<'a> Reader<'_, 'a> {
                     self.terms.report.say(
                         &codes::BAD_TEXT,
                         &at,
-                        "a stored action on an event that is not there",
+                        say!("a stored action on an event that is not there"),
                     );
                     bad(span)
                 });
@@ -158,7 +156,7 @@ impl<'a> Reader<'_, 'a> {
             }
             other => {
                 let what =
-                    format!("`storedActionType` is `{}`, which the meta-model does not have", shown(other));
+                    say!("`storedActionType` is `{}`, which the meta-model does not have", shown(other));
                 self.terms.report.say(&codes::BAD_VALUE, &at, what);
                 Qualifier::P1
             }
@@ -171,13 +169,13 @@ impl<'a> Reader<'_, 'a> {
         let at = attr::head(xml);
         let span = self.terms.report.span(&at);
         let Some(variable) = xml.children().find(|c| c.has_tag_name("variable")) else {
-            self.terms.report.say(&codes::BAD_TEXT, &at, "an action without a variable");
+            self.terms.report.say(&codes::BAD_TEXT, &at, say!("an action without a variable"));
             return bad(span);
         };
         if let Some((Thing::Var(number), place)) = self.declared(variable)
             && self.terms.plan.vars.get(number).is_some_and(|v| v.sort == VarSort::Step)
         {
-            let what = "an action writes the activity of a step; only a forcing order does";
+            let what = say!("an action writes the activity of a step; only a forcing order does");
             self.terms.report.say(&codes::NOT_CARRIED, &place, what);
             return bad(span);
         }
@@ -196,12 +194,12 @@ impl<'a> Reader<'_, 'a> {
         let span = self.terms.report.span(&at);
         let Some((chart, place)) = self.terms.plan.thing(xml, "partialGrafcet", self.terms.report) else {
             if xml.attribute("partialGrafcet").is_none() {
-                self.terms.report.say(&codes::BAD_TEXT, &at, "a forcing order without a chart");
+                self.terms.report.say(&codes::BAD_TEXT, &at, say!("a forcing order without a chart"));
             }
             return None;
         };
         let Thing::Sheet(chart) = chart else {
-            self.terms.report.say(&codes::UNKNOWN_OBJECT, &place, "what is forced is no chart");
+            self.terms.report.say(&codes::UNKNOWN_OBJECT, &place, say!("what is forced is no chart"));
             return None;
         };
         let explicit = || xml.attribute("forcedSteps").is_some_and(|s| !s.trim().is_empty());
@@ -213,13 +211,13 @@ impl<'a> Reader<'_, 'a> {
             "explicitSituation" => Situation::Steps(self.forced_steps(xml, chart, span)),
             other => {
                 let what =
-                    format!("`forcingOrderType` is `{}`, which the meta-model does not have", shown(other));
+                    say!("`forcingOrderType` is `{}`, which the meta-model does not have", shown(other));
                 self.terms.report.say(&codes::BAD_VALUE, &at, what);
                 return None;
             }
         };
         if sort != "explicitSituation" && explicit() {
-            let what = format!("the forced steps have no effect: `forcingOrderType` is {sort}");
+            let what = say!("the forced steps have no effect: `forcingOrderType` is {}", Said::foreign(sort));
             self.terms.report.say(&codes::LEFT_OUT, &at, what);
         }
         let name = Name::new(self.terms.names.chart(chart), span);
@@ -235,7 +233,7 @@ impl<'a> Reader<'_, 'a> {
                 }
                 _ => {
                     let name = shown(self.terms.names.chart(chart));
-                    let what = format!("a forced step that is no step of the chart `{name}`");
+                    let what = say!("a forced step that is no step of the chart `{name}`");
                     self.terms.report.say(&codes::UNKNOWN_OBJECT, &place, what);
                 }
             }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 
 use super::naming::Names;
 use super::read::{Plan, Thing};
@@ -63,14 +63,14 @@ pub(super) fn ends(
             from: web.gather(before, |sides| &sides.0, *xml, left, report),
             to: web.gather(behind, |sides| &sides.1, *xml, left, report),
         };
-        let label = names.label(index, number).map_or(String::new(), |l| format!(" `{}`", shown(l)));
+        let label = names.label(index, number).map_or(Said::default(), |l| say!(" `{}`", shown(l)));
         let at = attr::head(*xml);
         if ends.from.is_empty() {
-            let what = format!("no step stands before the transition{label}: it is always enabled");
+            let what = say!("no step stands before the transition{label}: it is always enabled");
             report.say(&codes::OPEN_LINK, &at, what);
         }
         if ends.to.is_empty() {
-            let what = format!("no step stands behind the transition{label}: it ends its branch");
+            let what = say!("no step stands behind the transition{label}: it ends its branch");
             report.say(&codes::OPEN_LINK, &at, what);
         }
         all.push(ends);
@@ -101,11 +101,12 @@ impl Web {
                 self.sync(b, |w| w.0.syncs.push(a));
             }
             (Thing::Step(..), Thing::Step(..)) => {
-                let what = "an arc from a step to a step; a transition stands between two steps";
+                let what = say!("an arc from a step to a step; a transition stands between two steps");
                 report.say(&codes::BAD_LINK, &attr::head(xml), what);
             }
             _ => {
-                let what = "an arc from a transition to a transition; a step stands between two transitions";
+                let what =
+                    say!("an arc from a transition to a transition; a step stands between two transitions");
                 report.say(&codes::BAD_LINK, &attr::head(xml), what);
             }
         }
@@ -137,15 +138,16 @@ impl Web {
         let mut seen = HashSet::new();
         while let Some(sync) = waiting.pop() {
             if !seen.insert(sync) {
-                let what = "synchronisations before or behind this transition meet twice or form a circle";
+                let what =
+                    say!("synchronisations before or behind this transition meet twice or form a circle");
                 report.say(&codes::BAD_LINK, &attr::head(xml), what);
                 return steps;
             }
             let Some(inner) = self.syncs.get(sync).map(pick) else { continue };
             let work = inner.steps.len() + inner.syncs.len() + 1;
             let Some(rest) = left.checked_sub(work) else {
-                let what = format!("the transitions of this file name more than {MOST_ENDS} steps");
-                report.element(&codes::TOO_LARGE, "transitions", &attr::head(xml), &what);
+                let what = say!("the transitions of this file name more than {MOST_ENDS} steps");
+                report.element(&codes::TOO_LARGE, "transitions", &attr::head(xml), what);
                 return steps;
             };
             *left = rest;
@@ -159,7 +161,7 @@ impl Web {
 /// The node at one end of an arc.
 fn end(plan: &Plan, sheet: usize, arc: Xml, name: &str, report: &mut Report) -> Option<Thing> {
     if arc.attribute(name).is_none() {
-        let what = format!("an arc without a `{name}`; it is left out");
+        let what = say!("an arc without a `{name}`; it is left out");
         report.say(&codes::OPEN_LINK, &attr::head(arc), what);
         return None;
     }
@@ -167,13 +169,13 @@ fn end(plan: &Plan, sheet: usize, arc: Xml, name: &str, report: &mut Report) -> 
     let home = match thing {
         Thing::Step(home, _) | Thing::Transition(home, _) | Thing::Synchronisation(home, _) => home,
         Thing::Var(_) | Thing::Sheet(_) | Thing::Action(_) => {
-            let what = format!("the `{name}` of an arc is a step, a transition or a synchronisation");
+            let what = say!("the `{name}` of an arc is a step, a transition or a synchronisation");
             report.say(&codes::BAD_LINK, &at, what);
             return None;
         }
     };
     if home != sheet {
-        let what = format!("the `{name}` of this arc stands in another chart; an arc stays in its own");
+        let what = say!("the `{name}` of this arc stands in another chart; an arc stays in its own");
         report.say(&codes::BAD_LINK, &at, what);
         return None;
     }
@@ -185,12 +187,12 @@ fn judge(xml: Xml, (before, behind): &(Side, Side), report: &mut Report) {
     let at = attr::head(xml);
     let empty = |s: &Side| s.steps.is_empty() && s.syncs.is_empty() && s.transitions == 0;
     if !before.steps.is_empty() && !behind.steps.is_empty() {
-        let what = "a synchronisation from steps to steps; a transition stands between them";
+        let what = say!("a synchronisation from steps to steps; a transition stands between them");
         report.say(&codes::BAD_LINK, &at, what);
     } else if before.transitions > 0 && behind.transitions > 0 {
-        let what = "a synchronisation from transitions to transitions; steps stand between them";
+        let what = say!("a synchronisation from transitions to transitions; steps stand between them");
         report.say(&codes::BAD_LINK, &at, what);
     } else if empty(before) || empty(behind) {
-        report.say(&codes::OPEN_LINK, &at, "a synchronisation that leads nowhere");
+        report.say(&codes::OPEN_LINK, &at, say!("a synchronisation that leads nowhere"));
     }
 }

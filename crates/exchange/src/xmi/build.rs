@@ -2,7 +2,7 @@
 
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, ChartKind, Document, Item, Name, Note, Order, Profile, ProfileName,
-    Step, StepKind, Transition, VarDecl, VarKind, codes,
+    Said, Step, StepKind, Transition, VarDecl, VarKind, codes, say,
 };
 
 use super::actions::{self, OfSteps};
@@ -111,13 +111,13 @@ impl<'a> Builder<'_, 'a> {
             },
             StepSort::Plain | StepSort::Enclosing if !enclosed.is_empty() => {
                 if node.sort == StepSort::Plain {
-                    let what = "a step of the class `Step` encloses a chart; it is an enclosing step";
+                    let what = say!("a step of the class `Step` encloses a chart; it is an enclosing step");
                     self.report.say(&codes::DIFFERENT, &attr::head(node.xml), what);
                 }
                 StepKind::Enclosing
             }
             StepSort::Enclosing => {
-                let what = "an enclosing step that encloses no chart; it is read as a step";
+                let what = say!("an enclosing step that encloses no chart; it is read as a step");
                 self.report.say(&codes::DIFFERENT, &attr::head(node.xml), what);
                 StepKind::Plain
             }
@@ -157,8 +157,8 @@ impl<'a> Builder<'_, 'a> {
         let receptivity = match terms.of(xml, "term") {
             Some(e) => delay.around(e, at),
             None => {
-                let with = if delay == Delay::None { "" } else { " to delay" };
-                let what = format!("a transition without a term{with}: its receptivity is missing");
+                let with = if delay == Delay::None { Said::default() } else { say!(" to delay") };
+                let what = say!("a transition without a term{with}: its receptivity is missing");
                 self.report.say(&codes::BAD_TEXT, &head, what);
                 bad(at)
             }

@@ -5,7 +5,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Span, Type, codes};
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Span, Type, codes, say};
 
 use super::read::{DEFAULT_NAME, Plan, Sheet, StepSort, Thing, VarSort};
 use super::refs::Xml;
@@ -127,7 +127,7 @@ fn clean(xml: Xml, report: &mut Report) -> Option<String> {
     let name = attr::text(xml, "name")?;
     let text = writable(&name.text);
     if text != name.text {
-        let what = format!("a back-tick or line end in the name `{}` is written otherwise", shown(&text));
+        let what = say!("a back-tick or line end in the name `{}` is written otherwise", shown(&text));
         report.say(&codes::RENAMED, &name.at, what);
     }
     (!text.trim().is_empty()).then_some(text)
@@ -146,13 +146,13 @@ fn variables(plan: &Plan, report: &mut Report) -> Vec<String> {
         }
         let wanted = clean(var.xml, report).unwrap_or_else(|| {
             let name = format!("v{number}");
-            let what = format!("a variable without a name; it is called `{name}`");
+            let what = say!("a variable without a name; it is called `{name}`");
             report.say(&codes::RENAMED, &at, what);
             name
         });
         let taken = spaces.entry(var.sheet).or_insert_with(Taken::exact);
         if taken.has(&wanted) {
-            let what = format!("a second variable is called `{}`; it is renamed", shown(&wanted));
+            let what = say!("a second variable is called `{}`; it is renamed", shown(&wanted));
             report.say(&codes::TWICE, &at, what);
         }
         let name = taken.give(&wanted);
@@ -182,14 +182,14 @@ fn timed(
         let all: Vec<(usize, usize)> = all.take(2).collect();
         let set = written.get_or_insert_with(|| set_by_actions(plan)).contains(&number);
         let what = match all[..] {
-            _ if set => format!("`{}` stays a variable, because an action writes it", shown(name)),
+            _ if set => say!("`{}` stays a variable, because an action writes it", shown(name)),
             [one] => {
                 found.insert(number, (time, one));
-                format!("the Boolean `{}` is read as the time operator that its name says", shown(name))
+                say!("the Boolean `{}` is read as the time operator that its name says", shown(name))
             }
-            [] => format!("`{}` stays a variable: there is no step `{}`", shown(name), shown(step)),
+            [] => say!("`{}` stays a variable: there is no step `{}`", shown(name), shown(step)),
             _ => {
-                format!("`{}` stays a variable: several steps are called `{}`", shown(name), shown(step))
+                say!("`{}` stays a variable: several steps are called `{}`", shown(name), shown(step))
             }
         };
         report.say(&codes::DIFFERENT, &attr::head(var.xml), what);
@@ -217,7 +217,7 @@ fn charts(plan: &Plan, vars: &[String], report: &mut Report) -> Vec<String> {
         let wanted = clean(sheet.xml, report).unwrap_or_else(|| DEFAULT_NAME.to_string());
         let name = taken.give(&wanted);
         if name != wanted {
-            let what = format!(
+            let what = say!(
                 "`{}` is also the name of something else; the chart is called `{}`",
                 shown(&wanted),
                 shown(&name)
@@ -234,7 +234,7 @@ fn number(xml: Xml, report: &mut Report) -> String {
     let text = xml.attribute("id").unwrap_or("0").trim();
     if text.parse::<i64>().is_err() {
         let at = attr::text(xml, "id").map_or_else(|| attr::head(xml), |t| t.at);
-        report.say(&codes::BAD_VALUE, &at, format!("the identifier `{}` is no whole number", shown(text)));
+        report.say(&codes::BAD_VALUE, &at, say!("the identifier `{}` is no whole number", shown(text)));
     }
     writable(text)
 }
@@ -255,9 +255,10 @@ fn steps(sheet: &Sheet, report: &mut Report) -> Vec<String> {
         let name = taken.give(&wanted);
         match first.get(&wanted) {
             Some(other) => {
-                let what = format!("a second step `{}`; it is called `{}`", shown(&wanted), shown(&name));
-                report
-                    .put(Problem::new(&codes::RENAMED, at, what).related(*other, "the first of this number"));
+                let what = say!("a second step `{}`; it is called `{}`", shown(&wanted), shown(&name));
+                report.put(
+                    Problem::new(&codes::RENAMED, at, what).related(*other, say!("the first of this number")),
+                );
             }
             None => {
                 first.insert(wanted, at);
@@ -280,7 +281,7 @@ fn labels(sheet: &Sheet, report: &mut Report) -> Vec<Option<String>> {
         let wanted = format!("T{}", number(*xml, report));
         let name = taken.give(&wanted);
         if name != wanted {
-            let what = format!("a second transition `{}`; it is called `{}`", shown(&wanted), shown(&name));
+            let what = say!("a second transition `{}`; it is called `{}`", shown(&wanted), shown(&name));
             report.say(&codes::RENAMED, &attr::head(*xml), what);
         }
         names.push(Some(name));

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, codes, say};
 
 use super::naming::Names;
 use super::read::{Plan, StepSort, Thing};
@@ -35,14 +35,14 @@ pub(super) fn read(plan: &Plan, names: &Names, report: &mut Report) -> Nesting {
         let step = match thing {
             Thing::Step(sheet, step) if can_enclose(plan, (sheet, step)) => (sheet, step),
             _ => {
-                report.say(&codes::UNKNOWN_OBJECT, &at, "the enclosing step of this chart is no step");
+                report.say(&codes::UNKNOWN_OBJECT, &at, say!("the enclosing step of this chart is no step"));
                 continue;
             }
         };
         if nesting.enclosed.get(&step).is_some_and(|list| list.contains(&chart)) {
             continue;
         }
-        let what = format!(
+        let what = say!(
             "the chart names its enclosing step, which does not name the chart `{}`",
             shown(names.chart(chart))
         );
@@ -68,7 +68,11 @@ impl Nesting {
         for (thing, at) in plan.things(node.xml, "partialGrafcets", report) {
             match thing {
                 Thing::Sheet(chart) => self.nest(names, step, chart, &at, report),
-                _ => report.say(&codes::UNKNOWN_OBJECT, &at, "what an enclosing step encloses is no chart"),
+                _ => report.say(
+                    &codes::UNKNOWN_OBJECT,
+                    &at,
+                    say!("what an enclosing step encloses is no chart"),
+                ),
             }
         }
     }
@@ -89,9 +93,9 @@ impl Nesting {
                 let name = shown(names.step(step.0, step.1));
                 let what = match found {
                     Some(_) => {
-                        format!("what the macro-step `{name}` names is no expansion; it is read as a step")
+                        say!("what the macro-step `{name}` names is no expansion; it is read as a step")
                     }
-                    None => format!("the macro-step `{name}` has no expansion; it is read as a step"),
+                    None => say!("the macro-step `{name}` has no expansion; it is read as a step"),
                 };
                 report.say(&codes::BAD_MACRO, &at, what);
             }
@@ -137,8 +141,8 @@ impl Nesting {
     ) {
         let (outer, inner) = (shown(names.chart(outer)), shown(names.chart(inner)));
         let what = match outer == inner {
-            true => format!("the chart `{inner}` is nested in a step of its own; it is not nested"),
-            false => format!(
+            true => say!("the chart `{inner}` is nested in a step of its own; it is not nested"),
+            false => say!(
                 "the chart `{inner}` would stand inside itself: `{outer}` is within it; it is not nested"
             ),
         };

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use g7_model::{Type, codes};
+use g7_model::{Said, Type, codes, say};
 use roxmltree::{Document, NodeId};
 
 use super::refs::{self, Refs, Xml};
@@ -123,7 +123,7 @@ impl<'a> Reader<'a, '_> {
         let index = self.plan.sheets.len();
         let expansion = kind(xml) == Some("MacrostepExpansion");
         if empty && !root {
-            let what = "an empty chart is left out";
+            let what = say!("an empty chart is left out");
             self.report.element(&codes::LEFT_OUT, "partialGrafcets", &attr::head(xml), what);
             return;
         }
@@ -144,7 +144,7 @@ impl<'a> Reader<'a, '_> {
             if child.is_element() {
                 self.element(child, here, root);
             } else if child.is_text() && child.text().is_some_and(|t| !t.trim().is_empty()) {
-                let what = "text between the elements has no meaning in a chart";
+                let what = say!("text between the elements has no meaning in a chart");
                 self.report.element(&codes::UNKNOWN_ELEMENT, "text", &child.range(), what);
             }
         }
@@ -243,8 +243,8 @@ impl<'a> Reader<'a, '_> {
     /// Reports a part of a chart that is outside of any chart.
     fn outside(&mut self, xml: Xml) {
         let tag = xml.tag_name().name();
-        let what = format!("`{}` outside a chart is left out", shown(tag));
-        self.report.element(&codes::LEFT_OUT, tag, &attr::head(xml), &what);
+        let what = say!("`{}` outside a chart is left out", shown(tag));
+        self.report.element(&codes::LEFT_OUT, tag, &attr::head(xml), what);
     }
 
     fn variable(&mut self, xml: Xml<'a>, sheet: Option<usize>) {
@@ -258,7 +258,12 @@ impl<'a> Reader<'a, '_> {
             Some("internal") => VarSort::Internal,
             Some("step") => VarSort::Step,
             Some(other) => {
-                self.bad_value(xml, "variableDeclarationType", other, "input, output, internal or step");
+                self.bad_value(
+                    xml,
+                    "variableDeclarationType",
+                    other,
+                    say!("input, output, internal or step"),
+                );
                 VarSort::Internal
             }
         };
@@ -266,12 +271,12 @@ impl<'a> Reader<'a, '_> {
             Some(Some("Bool")) => Type::Bool,
             Some(Some("Integer")) => Type::Dint,
             Some(other) => {
-                let what = format!("a variable of the sort `{}`", shown(other.unwrap_or("")));
+                let what = say!("a variable of the sort `{}`", shown(other.unwrap_or("")));
                 self.report.say(&codes::BAD_VALUE, &attr::head(xml), what);
                 Type::Bool
             }
             None => {
-                let what = "a variable without a sort; it is read as a Boolean";
+                let what = say!("a variable without a sort; it is read as a Boolean");
                 self.report.say(&codes::DIFFERENT, &attr::head(xml), what);
                 Type::Bool
             }
@@ -286,15 +291,15 @@ impl<'a> Reader<'a, '_> {
             Some("true" | "1") => true,
             None | Some("false" | "0") => false,
             Some(other) => {
-                self.bad_value(xml, name, other, "true or false");
+                self.bad_value(xml, name, other, say!("true or false"));
                 false
             }
         }
     }
 
-    fn bad_value(&mut self, xml: Xml, name: &str, value: &str, known: &str) {
+    fn bad_value(&mut self, xml: Xml, name: &str, value: &str, known: Said) {
         let at = attr::text(xml, name).map_or_else(|| attr::head(xml), |t| t.at);
-        let what = format!("`{name}` is `{}`; it is {known}", shown(value));
+        let what = say!("`{name}` is `{}`; it is {known}", shown(value));
         self.report.say(&codes::BAD_VALUE, &at, what);
     }
 
@@ -303,16 +308,16 @@ impl<'a> Reader<'a, '_> {
         for attribute in xml.attributes() {
             let name = attribute.name();
             if attribute.namespace().is_none() && !known.contains(&name) {
-                let what = format!("the meta-model has no attribute `{}` here; it is left out", shown(name));
-                self.report.element(&codes::UNKNOWN_ELEMENT, name, &attribute.range(), &what);
+                let what = say!("the meta-model has no attribute `{}` here; it is left out", shown(name));
+                self.report.element(&codes::UNKNOWN_ELEMENT, name, &attribute.range(), what);
             }
         }
     }
 
     fn unknown(&mut self, xml: Xml) {
         let tag = xml.tag_name().name();
-        let what = format!("the meta-model has no `{}` here; it is left out", shown(tag));
-        self.report.element(&codes::UNKNOWN_ELEMENT, tag, &attr::head(xml), &what);
+        let what = say!("the meta-model has no `{}` here; it is left out", shown(tag));
+        self.report.element(&codes::UNKNOWN_ELEMENT, tag, &attr::head(xml), what);
         if let Some(text) = xml.document().input_text().get(attr::head(xml)) {
             self.report.keep(text);
         }
@@ -325,8 +330,8 @@ impl<'a> Reader<'a, '_> {
             for name in ["sort", "input"] {
                 for reference in refs::list(xml, name) {
                     if let Err(what) = self.plan.refs.resolve(&reference.text) {
-                        let what = format!("{what}; the chart does not need it");
-                        self.report.element(&codes::LEFT_OUT, name, &reference.at, &what);
+                        let what = say!("{what}; the chart does not need it");
+                        self.report.element(&codes::LEFT_OUT, name, &reference.at, what);
                     }
                 }
             }
@@ -361,7 +366,7 @@ impl<'a> Plan<'a> {
                     None => {
                         let tag = shown(target.tag_name().name());
                         let what =
-                            format!("`{}` means a `{tag}` that takes no part here", shown(&reference.text));
+                            say!("`{}` means a `{tag}` that takes no part here", shown(&reference.text));
                         report.say(&codes::UNKNOWN_OBJECT, &reference.at, what);
                     }
                 },

@@ -1,6 +1,7 @@
 //! References by position: `//@partialGrafcets.0/@steps.1` is the second `steps` of the first
 //! `partialGrafcets` of the file.
 
+use g7_model::{Said, say};
 use std::collections::HashMap;
 use std::ops::Range;
 
@@ -34,21 +35,21 @@ impl<'a> Refs<'a> {
     }
 
     /// The element of a reference, or a description of the mistake.
-    pub(super) fn resolve(&self, reference: &str) -> Result<Xml<'a>, String> {
+    pub(super) fn resolve(&self, reference: &str) -> Result<Xml<'a>, Said> {
         let path = reference.strip_prefix('#').unwrap_or(reference);
         if path.contains('#') {
-            return Err(format!("`{}` is a reference into another file", shown(reference)));
+            return Err(say!("`{}` is a reference into another file", shown(reference)));
         }
         let Some(path) = path.strip_prefix('/') else {
             return match self.ids.get(path) {
                 Some(xml) => Ok(*xml),
-                None => Err(format!("no element has the identifier `{}`", shown(reference))),
+                None => Err(say!("no element has the identifier `{}`", shown(reference))),
             };
         };
         let mut segments = path.split('/');
         let first = segments.next().unwrap_or("");
         if !matches!(first, "" | "0") {
-            return Err(format!("`{}`: the file has one root only", shown(reference)));
+            return Err(say!("`{}`: the file has one root only", shown(reference)));
         }
         let mut here = self.root;
         for segment in segments {
@@ -58,19 +59,19 @@ impl<'a> Refs<'a> {
     }
 
     /// Follows one segment of a path, `@steps.1` or `@term`.
-    fn step(&self, here: Xml<'a>, segment: &str, whole: &str) -> Result<Xml<'a>, String> {
+    fn step(&self, here: Xml<'a>, segment: &str, whole: &str) -> Result<Xml<'a>, Said> {
         let named = segment.strip_prefix('@').map(|rest| match rest.rsplit_once('.') {
             Some((name, number)) => (name, number.parse::<usize>().ok()),
             None => (rest, Some(0)),
         });
         let Some((name, Some(number))) = named else {
-            return Err(format!("`{}` is no reference: `{}`", shown(whole), shown(segment)));
+            return Err(say!("`{}` is no reference: `{}`", shown(whole), shown(segment)));
         };
         let list = self.children.get(&(here.id(), name));
         let count = list.map_or(0, Vec::len);
         list.and_then(|l| l.get(number)).copied().ok_or_else(|| match count {
-            0 => format!("`{}` leads nowhere: there are no `{}`", shown(whole), shown(name)),
-            n => format!("`{}` leads nowhere: there are {n} `{}`, counted from 0", shown(whole), shown(name)),
+            0 => say!("`{}` leads nowhere: there are no `{}`", shown(whole), shown(name)),
+            n => say!("`{}` leads nowhere: there are {n} `{}`, counted from 0", shown(whole), shown(name)),
         })
     }
 }

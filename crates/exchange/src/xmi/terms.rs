@@ -1,6 +1,6 @@
 //! Turns terms into expressions.
 
-use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Span, UnaryOp, codes};
+use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Said, Span, UnaryOp, codes, say};
 
 use super::naming::Names;
 use super::read::{Plan, Thing, VarSort, kind};
@@ -54,8 +54,8 @@ impl<'a> Terms<'_, 'a> {
         let span = self.report.span(&at);
         let Some(left) = self.left.checked_sub(1) else {
             let what =
-                format!("the file has more than {MOST_TERMS} terms; an action counts for each of its steps");
-            self.report.element(&codes::TOO_LARGE, "term", &at, &what);
+                say!("the file has more than {MOST_TERMS} terms; an action counts for each of its steps");
+            self.report.element(&codes::TOO_LARGE, "term", &at, what);
             return (bad(span), 1);
         };
         *self.left = left;
@@ -82,7 +82,7 @@ impl<'a> Terms<'_, 'a> {
             _ => None,
         };
         let Some(shape) = shape else {
-            let what = format!("a term of the class `{}`, which the meta-model does not have", shown(class));
+            let what = say!("a term of the class `{}`, which the meta-model does not have", shown(class));
             self.report.say(&codes::BAD_TEXT, &at, what);
             return (bad(span), 1);
         };
@@ -92,8 +92,9 @@ impl<'a> Terms<'_, 'a> {
             Shape::Chain(_) | Shape::Equal => subterms.len() >= 2,
         };
         if !fits {
-            let wanted = if matches!(shape, Shape::Unary(_)) { "one subterm" } else { "two subterms" };
-            let what = format!("`{class}` takes {wanted} and has {}", subterms.len());
+            let wanted =
+                if matches!(shape, Shape::Unary(_)) { say!("one subterm") } else { say!("two subterms") };
+            let what = say!("`{class}` takes {wanted} and has {}", subterms.len());
             self.report.say(&codes::BAD_TEXT, &at, what);
             return (bad(span), 1);
         }
@@ -102,7 +103,7 @@ impl<'a> Terms<'_, 'a> {
         // dropped.
         let height = parts.iter().map(|p| p.1).max().unwrap_or(0) + parts.len();
         if height > HIGHEST {
-            self.report.say(&codes::TOO_DEEP, &at, format!("a term more than {HIGHEST} operators high"));
+            self.report.say(&codes::TOO_DEEP, &at, say!("a term more than {HIGHEST} operators high"));
             return (bad(span), 1);
         }
         (shape.build(parts.into_iter().map(|p| p.0).collect(), span), height)
@@ -112,14 +113,14 @@ impl<'a> Terms<'_, 'a> {
         let at = attr::head(xml);
         let span = self.report.span(&at);
         if xml.attribute("variableDeclaration").is_none() {
-            self.report.say(&codes::BAD_TEXT, &at, "a variable in a term without its declaration");
+            self.report.say(&codes::BAD_TEXT, &at, say!("a variable in a term without its declaration"));
             return bad(span);
         }
         let Some((thing, place)) = self.plan.thing(xml, "variableDeclaration", self.report) else {
             return bad(span);
         };
         let Thing::Var(number) = thing else {
-            let what = "a variable in a term means something that is no declaration";
+            let what = say!("a variable in a term means something that is no declaration");
             self.report.say(&codes::UNKNOWN_OBJECT, &place, what);
             return bad(span);
         };
@@ -135,7 +136,7 @@ impl<'a> Terms<'_, 'a> {
             Some((Thing::Step(sheet, step), _)) => self.names.activity((sheet, step), self.sheet, span),
             found => {
                 if found.is_some() || var.xml.attribute("step").is_none() {
-                    let what = "a variable for the activity of a step that names no step";
+                    let what = say!("a variable for the activity of a step that names no step");
                     self.report.say(&codes::UNKNOWN_OBJECT, &attr::head(var.xml), what);
                 }
                 bad(span)
@@ -148,7 +149,7 @@ impl<'a> Terms<'_, 'a> {
         match xml.attribute("value").unwrap_or("false").trim() {
             "true" | "1" => literal(Literal::Bool(true), span),
             "false" | "0" => literal(Literal::Bool(false), span),
-            other => self.bad_value(xml, other, "true or false"),
+            other => self.bad_value(xml, other, say!("true or false")),
         }
     }
 
@@ -160,13 +161,13 @@ impl<'a> Terms<'_, 'a> {
                 let expr = literal(Literal::Int(i128::from(n).abs(), None), span);
                 if n >= 0 { expr } else { unary(UnaryOp::Neg, expr, span) }
             }
-            Err(_) => self.bad_value(xml, text, "a whole number of 32 bits"),
+            Err(_) => self.bad_value(xml, text, say!("a whole number of 32 bits")),
         }
     }
 
-    fn bad_value(&mut self, xml: Xml, value: &str, known: &str) -> Expr {
+    fn bad_value(&mut self, xml: Xml, value: &str, known: Said) -> Expr {
         let at = attr::text(xml, "value").map_or_else(|| attr::head(xml), |t| t.at);
-        self.report.say(&codes::BAD_VALUE, &at, format!("the value `{}`; it is {known}", shown(value)));
+        self.report.say(&codes::BAD_VALUE, &at, say!("the value `{}`; it is {known}", shown(value)));
         bad(self.report.span(&at))
     }
 
@@ -179,7 +180,7 @@ impl<'a> Terms<'_, 'a> {
                 self.report.say(
                     &codes::BAD_VALUE,
                     &attr::head(xml),
-                    format!("the unit `{}`; it is s or ms", shown(other)),
+                    say!("the unit `{}`; it is s or ms", shown(other)),
                 );
                 Nanos::MILLISECOND
             }
@@ -193,21 +194,21 @@ impl<'a> Terms<'_, 'a> {
             "timeDelayed" => Delay::Dependent(t1, t2),
             "timeLimited" => {
                 if t2 != Nanos::ZERO {
-                    let what = "`resetTime` has no effect on what is limited in time; it is left out";
+                    let what = say!("`resetTime` has no effect on what is limited in time; it is left out");
                     self.report.say(&codes::LEFT_OUT, &attr::head(xml), what);
                 }
                 Delay::Limited(t1)
             }
             "none" => {
                 if t1 != Nanos::ZERO || t2 != Nanos::ZERO {
-                    let what = "the times have no effect: `timeConditionType` is none";
+                    let what = say!("the times have no effect: `timeConditionType` is none");
                     self.report.say(&codes::LEFT_OUT, &attr::head(xml), what);
                 }
                 Delay::None
             }
             other => {
                 let what =
-                    format!("`timeConditionType` is `{}`, which the meta-model does not have", shown(other));
+                    say!("`timeConditionType` is `{}`, which the meta-model does not have", shown(other));
                 self.report.say(&codes::BAD_VALUE, &attr::head(xml), what);
                 Delay::None
             }
@@ -220,7 +221,7 @@ impl<'a> Terms<'_, 'a> {
             Ok(n) if n >= 0 => unit * i64::from(n),
             _ => {
                 let at = attr::text(xml, name).map_or_else(|| attr::head(xml), |t| t.at);
-                let what = format!("`{name}` is `{}`; it is a whole number, not below 0", shown(text));
+                let what = say!("`{name}` is `{}`; it is a whole number, not below 0", shown(text));
                 self.report.say(&codes::BAD_VALUE, &at, what);
                 Nanos::ZERO
             }

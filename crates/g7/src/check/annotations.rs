@@ -1,6 +1,7 @@
 //! Problems as annotations of GitHub: commands in the output of a workflow, which GitHub shows at the lines of a
 //! change.
 
+use crate::tongue::language;
 use g7_model::Problem;
 
 use super::checked::Checked;
@@ -21,12 +22,13 @@ fn line(source: &Source, problem: &Problem) -> String {
     // GitHub takes columns only where they are of one line.
     let columns =
         if line == end_line { format!(",col={column},endColumn={end_column}") } else { String::new() };
-    let help = problem.help.as_ref().map_or_else(String::new, |help| format!("\n{help}"));
+    let help =
+        problem.help.as_ref().map_or_else(String::new, |help| format!("\n{}", help.in_language(language())));
     format!(
         "::{word} file={},line={line},endLine={end_line}{columns},title={}::{}\n",
         property(file),
-        property(&format!("{}: {}", problem.code.id, problem.code.title)),
-        data(&format!("{}{help}", problem.what))
+        property(&format!("{}: {}", problem.code.id, problem.code.title_in(language()))),
+        data(&format!("{}{help}", problem.what.in_language(language())))
     )
 }
 

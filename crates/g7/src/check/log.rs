@@ -1,5 +1,6 @@
 //! Problems as a log of SARIF 2.1.0, with their fixes, for tools of code review.
 
+use crate::tongue::language;
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::codes::{self, Code};
@@ -33,7 +34,7 @@ pub(super) fn of(all: &[Checked]) -> Value {
 fn rule(code: &Code) -> Value {
     let mut rule = json!({
         "id": code.id,
-        "shortDescription": { "text": code.title },
+        "shortDescription": { "text": code.title_in(language()) },
         "defaultConfiguration": { "level": code.severity.name() },
     });
     if let Some(page) = g7_page::explain(code.id, "en") {
@@ -43,19 +44,22 @@ fn rule(code: &Code) -> Value {
 }
 
 fn result(source: &Source, problem: &Problem, rules: &BTreeMap<&str, usize>) -> Value {
-    let help = problem.help.as_ref().map_or_else(String::new, |help| format!(". Help: {help}"));
+    let help = problem
+        .help
+        .as_ref()
+        .map_or_else(String::new, |help| format!(". Help: {}", help.in_language(language())));
     let related: Vec<Value> = problem
         .related
         .iter()
         .map(|(at, there)| {
             let mut place = location(source, *at);
-            place["message"] = json!({ "text": there });
+            place["message"] = json!({ "text": there.in_language(language()) });
             place
         })
         .collect();
     let mut row = json!({
         "ruleId": problem.code.id, "ruleIndex": rules.get(problem.code.id),
-        "level": problem.severity().name(), "message": { "text": format!("{}{help}", problem.what) },
+        "level": problem.severity().name(), "message": { "text": format!("{}{help}", problem.what.in_language(language())) },
         "locations": [location(source, problem.at)],
         "relatedLocations": related,
     });
@@ -78,7 +82,7 @@ fn region(source: &Source, at: Span) -> Value {
 fn fix(source: &Source, fix: &Fix) -> Value {
     let edit = |e: &g7_model::TextEdit| json!({ "deletedRegion": region(source, e.at), "insertedContent": { "text": e.text } });
     json!({
-        "description": { "text": fix.label },
+        "description": { "text": fix.label.in_language(language()) },
         "artifactChanges": [{
             "artifactLocation": artifact(&source.name),
             "replacements": fix.edits.iter().map(edit).collect::<Vec<_>>(),

@@ -13,7 +13,7 @@ mod watch;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use g7_model::{Item, Place, Problem, Span, codes};
+use g7_model::{Item, Place, Problem, Said, Span, codes};
 use serde_json::json;
 
 use crate::cli::{Check, Fixing, Report};
@@ -75,7 +75,7 @@ fn one(args: &Check, path: &Path) -> Result<Checked, Failure> {
     let source = match sources::load(path, 0) {
         Err(Failure::Form { name, why }) => {
             let source = Source::plain(&name, Vec::new());
-            let problems = vec![Problem::new(&codes::EXPECTED, Span::default(), why.clone())];
+            let problems = vec![Problem::new(&codes::EXPECTED, Span::default(), Said::foreign(why.clone()))];
             return Ok(Checked { source, problems, unproved: Vec::new(), no_form: Some(why) });
         }
         read => read?,

@@ -17,6 +17,7 @@ mod answers;
 mod open;
 mod places;
 
+use g7_model::Language;
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{
     DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, Notification as _, PublishDiagnostics,
@@ -44,13 +45,16 @@ pub(crate) fn serve() -> Result<Verdict, Failure> {
 
 fn session(connection: &Connection) -> Result<(), Failure> {
     let broken = |e: &dyn std::fmt::Display| Failure::Usage(format!("the editor broke off: {e}"));
-    let (id, _) = connection.initialize_start().map_err(|e| broken(&e))?;
+    let (id, asked) = connection.initialize_start().map_err(|e| broken(&e))?;
     let hello = serde_json::json!({
         "capabilities": answers::capabilities(),
         "serverInfo": { "name": "g7", "version": env!("CARGO_PKG_VERSION") },
     });
     connection.initialize_finish(id, hello).map_err(|e| broken(&e))?;
-    let mut open = Open::default();
+    // The client knows the language of its reader; else the surroundings do.
+    let locale = asked.get("locale").and_then(serde_json::Value::as_str);
+    let language = locale.map_or_else(crate::tongue::language, |l| Language::of(l).unwrap_or_default());
+    let mut open = Open { language, ..Open::default() };
     while let Some(message) = next(connection, &mut open)? {
         match message {
             Message::Request(request) => {

@@ -16,6 +16,8 @@ use super::places;
 /// The open texts, by address.
 #[derive(Default)]
 pub(super) struct Open {
+    /// The language of the reader.
+    pub(super) language: g7_model::Language,
     texts: BTreeMap<String, Text>,
     /// Those whose problems are not told yet.
     changed: BTreeSet<String>,
@@ -40,7 +42,10 @@ impl Open {
     pub(super) fn begin(&mut self, told: DidOpenTextDocumentParams) {
         let document = told.text_document;
         let uri = document.uri;
-        let file = File::open_native(&name(&uri), document.text);
+        let mut file = File::open_native(&name(&uri), document.text);
+        if let Ok(file) = &mut file {
+            file.language = self.language;
+        }
         self.changed.insert(uri.as_str().to_owned());
         self.texts.insert(uri.as_str().to_owned(), Text { uri, version: document.version, file });
     }
@@ -114,9 +119,9 @@ pub(super) fn diagnostic(file: &File, uri: &Uri, p: &Problem) -> Diagnostic {
     let place = |at| places::range(file, &file.source.range(at));
     let related = p.related.iter().map(|(at, what)| DiagnosticRelatedInformation {
         location: Location::new(uri.clone(), place(*at)),
-        message: what.clone(),
+        message: what.in_language(file.language),
     });
-    let help = p.help.as_ref().map_or(String::new(), |h| format!("\n{h}"));
+    let help = p.help.as_ref().map_or(String::new(), |h| format!("\n{}", h.in_language(file.language)));
     Diagnostic {
         range: place(p.at),
         severity: Some(match p.severity() {
@@ -125,7 +130,7 @@ pub(super) fn diagnostic(file: &File, uri: &Uri, p: &Problem) -> Diagnostic {
         }),
         code: Some(NumberOrString::String(p.code.id.to_owned())),
         source: source(),
-        message: format!("{}{help}", p.what),
+        message: format!("{}{help}", p.what.in_language(file.language)),
         related_information: Some(related.collect::<Vec<_>>()).filter(|r| !r.is_empty()),
         ..Diagnostic::default()
     }

@@ -69,6 +69,7 @@ impl Folder {
             .env_remove("LC_ALL")
             .env("LANG", "C")
             .env("COLUMNS", "100")
+            .env("LC_ALL", "C")
     }
 
     pub(crate) fn root(&self) -> &Path {

@@ -8,7 +8,7 @@
 use std::collections::HashMap;
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Problem, Span, Stmt, StmtKind};
+use g7_model::{Expr, ExprKind, Literal, Name, Problem, Said, Span, Stmt, StmtKind, say};
 
 use crate::nodes::when;
 use crate::terms::not;
@@ -35,7 +35,7 @@ pub(crate) fn structure(pieces: &[Piece], problems: &mut Vec<Problem>) -> Vec<St
         if let Piece::Label(name) = piece
             && labels.insert(&*name.text, index).is_some()
         {
-            let what = format!("the label `{}` stands there twice", name.text);
+            let what = say!("the label `{}` stands there twice", name.text);
             problems.push(Problem::new(&codes::BODY_LANGUAGE, name.at.0, what));
         }
     }
@@ -45,7 +45,7 @@ pub(crate) fn structure(pieces: &[Piece], problems: &mut Vec<Problem>) -> Vec<St
             Piece::Jump(_, name) => {
                 let target = labels.get(&*name.text).copied();
                 if target.is_none() {
-                    let what = format!("there is no label `{}`", name.text);
+                    let what = say!("there is no label `{}`", name.text);
                     problems.push(Problem::new(&codes::BODY_LANGUAGE, name.at.0, what));
                 }
                 target
@@ -83,17 +83,17 @@ impl Flow<'_> {
                 true
             }
             None => {
-                self.stuck(at, "these jumps are too entangled to be written as conditions and loops");
+                self.stuck(at, say!("these jumps are too entangled to be written as conditions and loops"));
                 false
             }
         }
     }
 
-    fn stuck(&mut self, at: Span, what: &str) {
+    fn stuck(&mut self, at: Span, what: Said) {
         if !self.stuck {
             self.stuck = true;
             let problem = Problem::new(&codes::BODY_LANGUAGE, at, what);
-            self.problems.push(problem.help("write this part in Structured Text"));
+            self.problems.push(problem.help(say!("write this part in Structured Text")));
         }
     }
 
@@ -110,7 +110,7 @@ impl Flow<'_> {
                 Piece::Label(name) => {
                     if let Some(last) = self.loop_at(at, end, inside) {
                         if depth >= DEEPEST {
-                            self.stuck(name.at.0, "loops nested too deeply");
+                            self.stuck(name.at.0, say!("loops nested too deeply"));
                             break;
                         }
                         out.push(self.repeated(Loop { start: at, last }, depth));
@@ -194,7 +194,7 @@ impl Flow<'_> {
         }
         let Some(condition) = condition else { return Jumped::On(Vec::new(), target) };
         if depth >= DEEPEST {
-            self.stuck(span, "jumps within jumps nested too deeply");
+            self.stuck(span, say!("jumps within jumps nested too deeply"));
             return Jumped::Leaves(Vec::new());
         }
         let meet = self.meeting(at, target, end, inside, span);
@@ -235,7 +235,7 @@ impl Flow<'_> {
     /// Writes a jump out of the current pieces: out of the loop, or to its next iteration.
     fn leave(&mut self, target: usize, inside: Option<Loop>, condition: Option<&Expr>, span: Span) -> Jumped {
         if !self.exits(target, inside) {
-            self.stuck(span, "this jump has no form as a condition or loop");
+            self.stuck(span, say!("this jump has no form as a condition or loop"));
             return Jumped::Leaves(Vec::new());
         }
         let exit = Stmt { kind: StmtKind::Exit, at: span.into() };

@@ -1,7 +1,7 @@
 //! Reads an Instruction List in the spelling of the standard.
 
 use g7_model::codes;
-use g7_model::{Arg, Expr, ExprKind, Name, Path, StandardFunction, Stmt};
+use g7_model::{Arg, Expr, ExprKind, Name, Path, StandardFunction, Stmt, say};
 
 use super::instruction::{Instruction, InstructionKind as Kind, Mnemonic, Operand, When, is_input, mnemonic};
 use super::translate::{translate, translate_expr};
@@ -77,7 +77,7 @@ impl Parser<'_> {
             let before = self.mark();
             self.instruction(&mut list);
             if self.mark() == before {
-                self.expected("an instruction");
+                self.expected(say!("an instruction"));
                 self.bump();
             }
         }
@@ -108,7 +108,7 @@ impl Parser<'_> {
 
     /// A label in upper case, because labels are compared without regard to case.
     fn label(&mut self) -> Option<Name> {
-        let mut name = self.name("a label")?;
+        let mut name = self.name(say!("a label"))?;
         name.text = name.text.to_ascii_uppercase().into();
         Some(name)
     }
@@ -131,10 +131,10 @@ impl Parser<'_> {
     fn operation(&mut self) -> Option<Kind> {
         let mut word = self.word();
         if word.is_empty() {
-            self.expected("an operator");
+            self.expected(say!("an operator"));
             return None;
         }
-        let name = self.name("an operator")?;
+        let name = self.name(say!("an operator"))?;
         // CODESYS and others write `AND N (`.
         if self.at_word("N") && !self.token().newline && self.ahead_is(1, "(") {
             let with_n = format!("{word}N");
@@ -194,7 +194,7 @@ impl Parser<'_> {
     fn value(&mut self) -> Option<Expr> {
         let token = self.token();
         if token.newline || self.at_end() {
-            self.expected("an operand");
+            self.expected(say!("an operand"));
             return None;
         }
         let start = token.start;
@@ -202,7 +202,7 @@ impl Parser<'_> {
         let e = match self.token().kind {
             lex::Kind::Word if !matches!(self.word().as_str(), "TRUE" | "FALSE") => self.variable(),
             lex::Kind::Sign => {
-                self.expected("an operand");
+                self.expected(say!("an operand"));
                 return None;
             }
             _ => self.expr_operand(),
@@ -235,7 +235,7 @@ impl Parser<'_> {
             ExprKind::Path(_) | ExprKind::Direct(_) => Some(value),
             ExprKind::Bad => None,
             _ => {
-                self.report.say(&codes::BAD_TEXT, &at, "only a variable can be written");
+                self.report.say(&codes::BAD_TEXT, &at, say!("only a variable can be written"));
                 None
             }
         }

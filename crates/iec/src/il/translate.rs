@@ -5,7 +5,7 @@
 //! of any other type this is a problem.
 
 use g7_model::codes::{self, Code};
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Path, Problem, Span, Stmt, StmtKind};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Path, Problem, Said, Span, Stmt, StmtKind, say};
 
 use super::instruction::{Instruction, InstructionKind as Kind, Operand, When};
 use super::jumps::{Piece, structure};
@@ -36,11 +36,11 @@ pub fn translate_expr(list: &[Instruction], at: Span) -> (Expr, Vec<Problem>) {
         Piece::Label(_) => None,
     });
     if let Some(place) = first {
-        let what = "a condition in Instruction List writes, calls and jumps nowhere";
+        let what = say!("a condition in Instruction List writes, calls and jumps nowhere");
         problems.push(Problem::new(&codes::BODY_LANGUAGE, place, what));
     }
     if result.is_none() && problems.is_empty() {
-        problems.push(Problem::new(&codes::BODY_LANGUAGE, at, "this Instruction List has no result"));
+        problems.push(Problem::new(&codes::BODY_LANGUAGE, at, say!("this Instruction List has no result")));
     }
     let bad = Expr { kind: ExprKind::Bad, at: at.into() };
     (result.map_or(bad, |r| r.expr), problems)
@@ -50,7 +50,7 @@ fn run(list: &[Instruction], value: bool) -> (Vec<Piece>, Option<Value>, Vec<Pro
     let mut run = Run::new(None, value);
     run.all(list);
     if let Some(open) = run.open.pop() {
-        run.say(&codes::UNCLOSED, open.at, "this bracket is never closed");
+        run.say(&codes::UNCLOSED, open.at, say!("this bracket is never closed"));
     }
     (run.pieces, run.result, run.problems)
 }
@@ -98,7 +98,7 @@ impl Run {
         Run { result, open, pieces, problems, value, copies: MOST_COPIED }
     }
 
-    fn say(&mut self, code: &'static Code, at: Span, what: impl Into<String>) {
+    fn say(&mut self, code: &'static Code, at: Span, what: Said) {
         self.problems.push(Problem::new(code, at, what));
     }
 
@@ -121,7 +121,7 @@ impl Run {
         let at = instruction.at;
         match &instruction.kind {
             Kind::Label(name) => {
-                self.closed(at, "a label");
+                self.closed(at, say!("a label"));
                 self.result = None;
                 self.pieces.push(Piece::Label(name.clone()));
             }
@@ -144,14 +144,14 @@ impl Run {
                 self.set(Expr { kind, at: at.into() }, tallest + 1, size + 1);
             }
             Kind::Jump(name, when) => {
-                self.closed(at, "a jump");
+                self.closed(at, say!("a jump"));
                 if let Some(condition) = self.condition(*when, at) {
                     self.pieces.push(Piece::Jump(condition, name.clone()));
                 }
             }
             Kind::Call(path, args, when) => self.call(path, args, *when, at, rest),
             Kind::Input(member, path) => {
-                self.closed(at, "a call");
+                self.closed(at, say!("a call"));
                 if let Some(value) = self.need(at) {
                     let arg = Arg { name: Some(member.clone()), output: false, value: value.expr };
                     self.put(StmtKind::Call(path.clone(), vec![arg]), at);
@@ -159,7 +159,7 @@ impl Run {
                 }
             }
             Kind::Return(when) => {
-                self.closed(at, "a return");
+                self.closed(at, say!("a return"));
                 if let Some(condition) = self.condition(*when, at) {
                     self.pieces.push(Piece::Return(condition, at));
                 }
@@ -180,7 +180,7 @@ impl Run {
         self.say(
             &codes::TOO_DEEP,
             at,
-            format!("a result of more than {MOST_HIGH} operations; store it between"),
+            say!("a result of more than {MOST_HIGH} operations; store it between"),
         );
         self.result = Some(Value::bad(at));
     }
@@ -189,7 +189,8 @@ impl Run {
     /// none.
     fn take(&mut self, at: Span) -> Value {
         self.result.take().unwrap_or_else(|| {
-            let what = "there is no result here; behind a label, a call and at the start one is loaded first";
+            let what =
+                say!("there is no result here; behind a label, a call and at the start one is loaded first");
             self.say(&codes::BODY_LANGUAGE, at, what);
             Value::bad(at)
         })
@@ -204,7 +205,11 @@ impl Run {
                 self.result = Some(value.clone());
             }
             None => {
-                self.say(&codes::TOO_DEEP, at, "results of too many operations are used again; store them");
+                self.say(
+                    &codes::TOO_DEEP,
+                    at,
+                    say!("results of too many operations are used again; store them"),
+                );
                 self.result = Some(Value::bad(at));
                 self.copies = usize::MAX;
             }
@@ -213,9 +218,9 @@ impl Run {
     }
 
     /// True if no bracket is open. Instructions with an effect must stand outside of brackets.
-    fn closed(&mut self, at: Span, what: &str) {
+    fn closed(&mut self, at: Span, what: Said) {
         if !self.open.is_empty() {
-            self.say(&codes::BODY_LANGUAGE, at, format!("{what} cannot stand between brackets"));
+            self.say(&codes::BODY_LANGUAGE, at, say!("{what} cannot stand between brackets"));
         }
     }
 
@@ -229,7 +234,7 @@ impl Run {
     }
 
     fn store(&mut self, target: &Expr, n: bool, at: Span) {
-        self.closed(at, "a store");
+        self.closed(at, say!("a store"));
         let Some(value) = self.need(at) else { return };
         let stored = if n { not(value.expr) } else { value.expr };
         self.put(StmtKind::Assign { target: target.clone(), value: stored }, at);
@@ -238,7 +243,7 @@ impl Run {
     }
 
     fn latch(&mut self, target: &Expr, value: bool, at: Span) {
-        self.closed(at, "a set or reset");
+        self.closed(at, say!("a set or reset"));
         let Some(result) = self.need(at) else { return };
         let assigned = assign(target.clone(), boolean(value, at), at);
         self.put(StmtKind::If(vec![(result.expr, vec![assigned])], Vec::new()), at);
@@ -254,7 +259,7 @@ impl Run {
             }
             Operand::Open(value) => {
                 if self.open.len() >= MOST_OPEN {
-                    return self.say(&codes::TOO_DEEP, at, "brackets nested too deeply");
+                    return self.say(&codes::TOO_DEEP, at, say!("brackets nested too deeply"));
                 }
                 let before = self.take(at);
                 self.open.push(Open { before, op, negated: n, at });
@@ -265,7 +270,7 @@ impl Run {
 
     fn close(&mut self, at: Span) {
         let Some(open) = self.open.pop() else {
-            return self.say(&codes::BODY_LANGUAGE, at, "no bracket is open here");
+            return self.say(&codes::BODY_LANGUAGE, at, say!("no bracket is open here"));
         };
         let right = self.take(at);
         let right = if open.negated { right.negated() } else { right };
@@ -280,7 +285,7 @@ impl Run {
     }
 
     fn call(&mut self, path: &Path, args: &[Arg], when: When, at: Span, rest: &[Instruction]) {
-        self.closed(at, "a call");
+        self.closed(at, say!("a call"));
         let Some(condition) = self.condition(when, at) else { return };
         let call = StmtKind::Call(path.clone(), args.to_vec());
         match condition {
@@ -294,7 +299,9 @@ impl Run {
         let outputs: Vec<&Expr> = args.iter().filter(|a| a.output).map(|a| &a.value).collect();
         if self.touches(&written) || outputs.iter().any(|o| self.touches(o)) {
             if self.used(rest) {
-                let what = "the result that is used behind this call is read from what the call changes; store it in a variable first";
+                let what = say!(
+                    "the result that is used behind this call is read from what the call changes; store it in a variable first"
+                );
                 self.say(&codes::BODY_LANGUAGE, at, what);
             }
             self.result = None;
@@ -335,7 +342,7 @@ impl Run {
         let ends = |i: &Instruction| matches!(i.kind, Kind::Load { .. } | Kind::Label(_));
         let length = rest.iter().position(ends).unwrap_or(rest.len());
         let (here, behind) = rest.split_at(length);
-        self.closed(at, "a set or reset");
+        self.closed(at, say!("a set or reset"));
         let Some(result) = self.need(at) else { return behind };
         let mut arms = [vec![assign(target.clone(), boolean(value, at), at)], Vec::new()];
         for (arm, case) in arms.iter_mut().zip([true, false]) {
@@ -345,7 +352,9 @@ impl Run {
                 match piece {
                     Piece::Do(stmt) => arm.push(stmt),
                     Piece::Jump(..) | Piece::Return(..) | Piece::Label(_) => {
-                        let what = "a jump on a result that was changed by this instruction; store it in a variable first";
+                        let what = say!(
+                            "a jump on a result that was changed by this instruction; store it in a variable first"
+                        );
                         run.problems.push(Problem::new(&codes::BODY_LANGUAGE, at, what));
                         break;
                     }

@@ -5,7 +5,7 @@
 //! cases.
 
 use g7_model::codes;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, Problem, Span, Stmt, StmtKind};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, Problem, Said, Span, Stmt, StmtKind, say};
 
 use super::rung::{Coil, Element, Rung};
 use crate::il::jumps::{Piece, structure};
@@ -23,7 +23,7 @@ pub fn translate(rungs: &[Rung], problems: &mut Vec<Problem>) -> Vec<Stmt> {
     for rung in rungs {
         run.pieces.extend(rung.label.clone().map(Piece::Label));
         if !rung.elements.is_empty() && !has_coil(&rung.elements) {
-            let what = "this rung does nothing: it has no coil";
+            let what = say!("this rung does nothing: it has no coil");
             run.problems.push(Problem::new(&codes::BODY_LANGUAGE, rung.at, what));
         }
         let base = Power { expr: boolean(true, rung.at), height: 1 };
@@ -36,7 +36,7 @@ pub fn translate(rungs: &[Rung], problems: &mut Vec<Problem>) -> Vec<Stmt> {
 /// Translates one rung of contacts into the power behind its last element: a receptivity.
 pub fn translate_expr(rungs: &[Rung], at: Span, problems: &mut Vec<Problem>) -> Expr {
     let [rung] = rungs else {
-        problems.push(Problem::new(&codes::BODY_LANGUAGE, at, "a condition in Ladder is one rung"));
+        problems.push(Problem::new(&codes::BODY_LANGUAGE, at, say!("a condition in Ladder is one rung")));
         return Expr { kind: ExprKind::Bad, at: at.into() };
     };
     let mut run = Run { pieces: Vec::new(), problems, parts: MOST_PARTS };
@@ -44,7 +44,11 @@ pub fn translate_expr(rungs: &[Rung], at: Span, problems: &mut Vec<Problem>) -> 
     let power = run.wire(&rung.elements, base, &mut Vec::new(), true);
     let wrote = !run.pieces.is_empty();
     if wrote {
-        problems.push(Problem::new(&codes::BODY_LANGUAGE, at, "a condition in Ladder has contacts only"));
+        problems.push(Problem::new(
+            &codes::BODY_LANGUAGE,
+            at,
+            say!("a condition in Ladder has contacts only"),
+        ));
     }
     power.expr
 }
@@ -71,7 +75,7 @@ fn has_coil(elements: &[Element]) -> bool {
 }
 
 impl Run<'_> {
-    fn say(&mut self, at: Span, what: &str) {
+    fn say(&mut self, at: Span, what: Said) {
         self.problems.push(Problem::new(&codes::BODY_LANGUAGE, at, what));
     }
 
@@ -91,7 +95,7 @@ impl Run<'_> {
         let at = left.expr.at.0.to(right.expr.at.0);
         let tall = left.height.max(right.height) + 1;
         if tall > MOST_HIGH {
-            let what = format!("a rung with more than {MOST_HIGH} elements in a row");
+            let what = say!("a rung with more than {MOST_HIGH} elements in a row");
             self.problems.push(Problem::new(&codes::TOO_DEEP, at, what));
             return Power { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 };
         }
@@ -110,7 +114,9 @@ impl Run<'_> {
                 let at = power.expr.at.0;
                 if self.parts > 0 {
                     self.parts = 0;
-                    let what = "these rungs stand for too long expressions; write some of them as rungs of their own";
+                    let what = say!(
+                        "these rungs stand for too long expressions; write some of them as rungs of their own"
+                    );
                     self.problems.push(Problem::new(&codes::TOO_DEEP, at, what));
                 }
                 Power { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 }
@@ -137,7 +143,10 @@ impl Run<'_> {
                     let uses = !rest.is_empty() || wanted;
                     if uses && self.changes(coil, &power.expr) {
                         if !held.is_empty() || wanted {
-                            self.say(*at, "this coil changes what the rung was read from; write two rungs");
+                            self.say(
+                                *at,
+                                say!("this coil changes what the rung was read from; write two rungs"),
+                            );
                             continue;
                         }
                         self.cases(coil, power, rest, *at);
@@ -150,7 +159,10 @@ impl Run<'_> {
                     let power = self.at_coil(&base, &own);
                     let written = Expr { kind: ExprKind::Path(path.clone()), at: (*at).into() };
                     if held.iter().any(|h| reads(h, &written)) {
-                        self.say(*at, "this block changes what the rung was read from; write two rungs");
+                        self.say(
+                            *at,
+                            say!("this block changes what the rung was read from; write two rungs"),
+                        );
                     }
                     let expr = self.block(path, args, power, *at);
                     if let Some(output) = output {
@@ -159,7 +171,10 @@ impl Run<'_> {
                         base = Power { expr: boolean(true, *at), height: 1 };
                         own = Power { expr: Expr { kind, at: (*at).into() }, height: 1 };
                     } else if reads(&expr, &written) {
-                        self.say(*at, "this block changes what the rung was read from; write two rungs");
+                        self.say(
+                            *at,
+                            say!("this block changes what the rung was read from; write two rungs"),
+                        );
                     }
                 }
                 Element::Branch(ways, at) => {
@@ -239,7 +254,7 @@ impl Run<'_> {
     /// Reports a coil that changes an expression which is still needed.
     fn guard(&mut self, coil: &Coil, held: &[Expr], at: Span) {
         if held.iter().any(|h| self.changes(coil, h)) {
-            self.say(at, "this coil changes what the rung was read from; write two rungs");
+            self.say(at, say!("this coil changes what the rung was read from; write two rungs"));
         }
     }
 
@@ -290,7 +305,7 @@ impl Run<'_> {
                     if taken {
                         self.say(
                             arg.value.at.0,
-                            "power goes into one input; the others have values, `PT := 5s`",
+                            say!("power goes into one input; the others have values, `PT := 5s`"),
                         );
                     }
                     taken = true;
@@ -327,7 +342,7 @@ impl Run<'_> {
                 }
             }
             if jumps && case {
-                self.say(at, "behind this coil, which changes what the rung was read from, stands a jump; write two rungs");
+                self.say(at, say!("behind this coil, which changes what the rung was read from, stands a jump; write two rungs"));
             }
             arms.push(list);
         }

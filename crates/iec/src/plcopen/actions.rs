@@ -4,6 +4,7 @@
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Literal, Nanos, Path, Qualifier, Span, Stmt, StmtKind, Target, Work,
+    say,
 };
 
 use super::draft::{Draft, Maker, block, guarded, kept};
@@ -51,7 +52,7 @@ pub(super) fn of_step<'a>(
         if let Some(qualifier) = qualifier {
             actions.extend(step_action(maker, draft, own, &value, qualifier));
         } else if maker.coder.action(&value, Span::default(), &draft.place).is_some() {
-            let what = format!("`{value}`, which the step has in an attribute that is not known");
+            let what = say!("`{value}`, which the step has in an attribute that is not known");
             maker.coder.say(&codes::NOT_CARRIED, own, what);
         }
     }
@@ -95,7 +96,7 @@ pub(super) fn loose(maker: &mut Maker, draft: &Draft) {
     for object in draft.graph.objects.iter().filter(|o| o.kind == "actionBlock") {
         let hangs = object.inputs.iter().filter(|i| i.slot == Slot::Flow).any(|i| !i.wires.is_empty());
         if !hangs {
-            maker.coder.say(&codes::BAD_LINK, object.node, "an action block that hangs on no step");
+            maker.coder.say(&codes::BAD_LINK, object.node, say!("an action block that hangs on no step"));
         }
     }
 }
@@ -110,7 +111,7 @@ fn step_action<'a>(
 ) -> Option<Action> {
     let at = maker.coder.report.span(&head(step));
     let Some((unit, index)) = maker.coder.action(name, at, &draft.place) else {
-        let what = format!("the step's action `{name}` is not there");
+        let what = say!("the step's action `{name}` is not there");
         maker.coder.say(&codes::UNKNOWN_OBJECT, step, what);
         return None;
     };
@@ -145,8 +146,8 @@ fn action<'a>(maker: &mut Maker<'_, '_, '_, 'a>, draft: &mut Draft<'_, 'a>, node
     let qualifier = qualifier(maker, node)?;
     let time = time(maker, draft, node, qualifier);
     if let Some(indicator) = text(node, "indicator").filter(|t| !t.text.trim().is_empty()) {
-        let what = format!("the indicator `{}` of an action is left out", line(&indicator.text));
-        maker.coder.report.element(&codes::LEFT_OUT, "indicator", &indicator.at, &what);
+        let what = say!("the indicator `{}` of an action is left out", line(&indicator.text));
+        maker.coder.report.element(&codes::LEFT_OUT, "indicator", &indicator.at, what);
     }
     let target = if let Some(reference) = kid(node, "reference") {
         reference_target(maker, draft, &text(reference, "name")?)?
@@ -155,11 +156,11 @@ fn action<'a>(maker: &mut Maker<'_, '_, '_, 'a>, draft: &mut Draft<'_, 'a>, node
     } else if let Some(name) = text(node, "name").or_else(|| text(node, "actionName")) {
         reference_target(maker, draft, &name)?
     } else {
-        maker.coder.say(&codes::BAD_TEXT, node, "an action that does nothing");
+        maker.coder.say(&codes::BAD_TEXT, node, say!("an action that does nothing"));
         return None;
     };
     if documentation(node).is_some() {
-        let what = "the documentation of an action is left out";
+        let what = say!("the documentation of an action is left out");
         maker.coder.report.element(&codes::LEFT_OUT, "documentation", &head(node), what);
     }
     // A body with a condition tests it in its own first line.
@@ -184,7 +185,7 @@ fn qualifier(maker: &mut Maker, node: Xml) -> Option<Qualifier> {
     let Some(word) = word(node, "qualifier") else { return Some(Qualifier::N) };
     let found = Qualifier::named(&word.to_ascii_uppercase());
     if found.is_none() {
-        let what = format!("the qualifier `{}` has no counterpart; the action is left out", line(word));
+        let what = say!("the qualifier `{}` has no counterpart; the action is left out", line(word));
         maker.coder.say(&codes::NOT_CARRIED, node, what);
     }
     found
@@ -207,13 +208,12 @@ fn time(maker: &mut Maker, draft: &Draft, node: Xml, qualifier: Qualifier) -> Op
             Some(maker.coder.expr(raw, &draft.place))
         }
         Some(written) if duration(written.text.trim()) != Some(Nanos::ZERO) => {
-            let what =
-                format!("a duration with the qualifier {}, which has none, is left out", qualifier.name());
+            let what = say!("a duration with the qualifier {}, which has none, is left out", qualifier);
             maker.coder.report.say(&codes::LEFT_OUT, &written.at, what);
             None
         }
         None if qualifier.timed() => {
-            let what = format!("the qualifier {} without its duration; it is taken for 0", qualifier.name());
+            let what = say!("the qualifier {} without its duration; it is taken for 0", qualifier);
             maker.coder.say(&codes::BAD_VALUE, node, what);
             Some(nodes::time(Nanos::ZERO, at))
         }
@@ -234,7 +234,7 @@ fn reference_target(maker: &mut Maker, draft: &mut Draft, name: &Text) -> Option
     if let Some((path, _)) = maker.coder.variable(word, at, &draft.place) {
         return Some(Target::Path(path));
     }
-    let what = format!("`{}` is no variable and no action of this unit", line(word));
+    let what = say!("`{}` is no variable and no action of this unit", line(word));
     maker.coder.report.say(&codes::UNKNOWN_OBJECT, &name.at, what);
     None
 }
@@ -247,11 +247,15 @@ fn inline_target<'a>(
 ) -> Option<Target> {
     let at = maker.coder.report.span(&head(inline));
     let Some((language, body)) = tree::body(inline) else {
-        maker.coder.say(&codes::BAD_TEXT, inline, "an action without a body");
+        maker.coder.say(&codes::BAD_TEXT, inline, say!("an action without a body"));
         return None;
     };
     if language == Language::Sfc {
-        maker.coder.say(&codes::NOT_CARRIED, inline, "an action within a step that is a chart of its own");
+        maker.coder.say(
+            &codes::NOT_CARRIED,
+            inline,
+            say!("an action within a step that is a chart of its own"),
+        );
         return None;
     }
     let statements = maker.coder.body(language, body, &draft.place);

@@ -4,7 +4,7 @@
 use std::collections::{BTreeMap, HashMap};
 
 use g7_model::codes;
-use g7_model::{Arg, CaseArm, Expr, ExprKind, Name, Path, Span, Stmt, StmtKind, Type};
+use g7_model::{Arg, CaseArm, Expr, ExprKind, Name, Path, Said, Span, Stmt, StmtKind, Type, say};
 
 use super::network;
 use super::read::{PouKind, SectionKind};
@@ -111,7 +111,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             let Some(left) = self.left.checked_sub(1) else {
                 if !self.full {
                     self.full = true;
-                    let what = "calls of blocks make more statements than are read";
+                    let what = say!("calls of blocks make more statements than are read");
                     self.report.put(g7_model::Problem::new(&codes::TOO_LARGE, statement.at.0, what));
                 }
                 break;
@@ -127,7 +127,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
         let mut inner = place.clone();
         inner.nested += 1;
         if inner.nested > MOST_NESTED {
-            let what = "statements nested too deeply, calls of blocks counted in";
+            let what = say!("statements nested too deeply, calls of blocks counted in");
             self.report.put(g7_model::Problem::new(&codes::TOO_DEEP, at, what));
             return;
         }
@@ -158,7 +158,8 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             StmtKind::While(e, body) => StmtKind::While(self.expr(e, place), self.statements(body, &inner)),
             StmtKind::Repeat(body, e) => StmtKind::Repeat(self.statements(body, &inner), self.expr(e, place)),
             StmtKind::Return if place.depth > 0 => {
-                let what = "RETURN in a block that is called: the rest of the caller would not run either";
+                let what =
+                    say!("RETURN in a block that is called: the rest of the caller would not run either");
                 self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
                 return;
             }
@@ -177,7 +178,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
         match self.find(std::slice::from_ref(&var), place) {
             Found::Path(mut names, _) if names.len() == 1 => names.pop().unwrap_or(var),
             Found::Path(..) | Found::Unit(_) | Found::Action(..) => {
-                let what = format!("the loop counts with `{}`, a variable of another chart", var.text);
+                let what = say!("the loop counts with `{}`, a variable of another chart", var.text);
                 self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, var.at.0, what));
                 var
             }
@@ -315,7 +316,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             Found::Path(names, ty) => {
                 let block = matches!(ty, Some(Type::Fb(_)));
                 if !block && !args.is_empty() && names.len() == 1 && self.is_function(&path) {
-                    let what = "the result of a function that is called as a statement is dropped";
+                    let what = say!("the result of a function that is called as a statement is dropped");
                     self.report.put(g7_model::Problem::new(&codes::LEFT_OUT, at, what));
                     return;
                 }
@@ -333,7 +334,11 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
     fn run(&mut self, unit: usize, args: Vec<Arg>, at: Span, place: &Place, done: &mut Vec<Stmt>) {
         let (Some(known), Some(pou)) = (self.plan.units.get(unit), self.plan.pou(unit)) else { return };
         if place.depth > DEEPEST {
-            self.report.put(g7_model::Problem::new(&codes::TOO_DEEP, at, "calls within calls without end"));
+            self.report.put(g7_model::Problem::new(
+                &codes::TOO_DEEP,
+                at,
+                say!("calls within calls without end"),
+            ));
             return;
         }
         let inputs =
@@ -348,7 +353,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
                 self.report.put(g7_model::Problem::new(
                     &codes::BAD_TEXT,
                     at,
-                    "more values than the block has inputs",
+                    say!("more values than the block has inputs"),
                 ));
                 break;
             };
@@ -395,7 +400,11 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
         let Some(whole) = self.plan.pou(unit).and_then(|p| p.actions.get(action).copied()) else { return };
         let Some((language, node)) = tree::body(whole) else { return };
         if place.depth > DEEPEST {
-            self.report.put(g7_model::Problem::new(&codes::TOO_DEEP, at, "calls within calls without end"));
+            self.report.put(g7_model::Problem::new(
+                &codes::TOO_DEEP,
+                at,
+                say!("calls within calls without end"),
+            ));
             return;
         }
         if language == Language::Sfc {
@@ -442,7 +451,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
     }
 
     /// Reports a problem of an element.
-    pub(super) fn say(&mut self, code: &'static codes::Code, node: Xml, what: impl Into<String>) {
+    pub(super) fn say(&mut self, code: &'static codes::Code, node: Xml, what: Said) {
         self.report.say(code, &head(node), what);
     }
 }

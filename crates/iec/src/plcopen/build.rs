@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use g7_model::codes;
 use g7_model::{
     Block, Body, Chart, ChartItem, ChartKind, Document, Expr, Function, Item, Local, Name, Param, Problem,
-    Profile, ProfileName, Span, Stmt, StmtKind, Switch, Type, VarDecl, VarKind,
+    Profile, ProfileName, Span, Stmt, StmtKind, Switch, Type, VarDecl, VarKind, say,
 };
 
 use super::bodies::{Callee, Calls, Coder, Place, Put, called, flags_of, resolve_calls};
@@ -138,12 +138,12 @@ impl<'a> Builder<'_, '_, 'a> {
                 continue;
             }
             if unit.interval.is_some() {
-                let what = "the body of a slower task; it runs in every scan";
+                let what = say!("the body of a slower task; it runs in every scan");
                 self.coder.say(&codes::NOT_CARRIED, unit.node, what);
             }
             let body = self.coder.body(language, node, &Place::of_unit(index, None, false));
             if order.len() > 1 && body.iter().any(returns) {
-                let what = "RETURN in one of several programs: the others would not run either";
+                let what = say!("RETURN in one of several programs: the others would not run either");
                 self.coder.say(&codes::NOT_CARRIED, pou.node, what);
             }
             let late = last.zip(turn(unit)).is_some_and(|(last, turn)| turn > last);
@@ -196,13 +196,11 @@ impl<'a> Builder<'_, '_, 'a> {
         let at = self.coder.report.span(&head(node));
         let title = name.unwrap_or_else(|| chart.clone());
         let what = if calls.acted {
-            format!(
+            say!(
                 "`{title}` is called by an action: its chart evolves in the scan behind that, while it is called"
             )
         } else {
-            format!(
-                "`{title}` is called on a condition: its chart evolves behind the body, while it is called"
-            )
+            say!("`{title}` is called on a condition: its chart evolves behind the body, while it is called")
         };
         self.coder.say(&codes::DIFFERENT, node, what);
         let vars = self.of_charts.get_mut(unit)?;
@@ -256,7 +254,9 @@ impl<'a> Builder<'_, '_, 'a> {
             if body.get(last).is_some_and(|s| called(s).is_none()) { last.saturating_sub(1) } else { last };
         let stretch = body.get(first..=last).unwrap_or(&[]);
         if let Some(other) = stretch.iter().find(|s| !gives(s)) {
-            let what = "charts of called blocks evolve together, behind this; what it reads of them is of the scan before";
+            let what = say!(
+                "charts of called blocks evolve together, behind this; what it reads of them is of the scan before"
+            );
             self.coder.report.put(Problem::new(&codes::DIFFERENT, other.at.0, what));
         }
     }
@@ -275,7 +275,7 @@ impl<'a> Builder<'_, '_, 'a> {
                     Some(Known::Type(ty)) => ty,
                     _ => {
                         let what =
-                            format!("the function `{}` has no result that can be carried over", name.text);
+                            say!("the function `{}` has no result that can be carried over", name.text);
                         self.coder.say(&codes::NOT_CARRIED, pou.node, what);
                         return None;
                     }
@@ -290,7 +290,7 @@ impl<'a> Builder<'_, '_, 'a> {
                         }
                         let at = self.coder.report.span(&text(*variable, "name")?.at);
                         let Known::Type(ty) = types::known(*variable) else {
-                            let what = format!("`{local}` is of a type that has no counterpart");
+                            let what = say!("`{local}` is of a type that has no counterpart");
                             self.coder.say(&codes::NOT_CARRIED, *variable, what);
                             continue;
                         };
@@ -301,7 +301,7 @@ impl<'a> Builder<'_, '_, 'a> {
                             continue;
                         }
                         if matches!(section.kind, SectionKind::Output | SectionKind::InOut) {
-                            let what = "a function with further outputs; they are dropped";
+                            let what = say!("a function with further outputs; they are dropped");
                             self.coder.say(&codes::NOT_CARRIED, *variable, what);
                         }
                         let init = types::initial(*variable, ty, self.coder.report);
@@ -311,7 +311,7 @@ impl<'a> Builder<'_, '_, 'a> {
                 let place = Place::of_function(locals);
                 let statements = match tree::body(pou.node) {
                     Some((Language::Sfc, node)) => {
-                        self.coder.say(&codes::NOT_CARRIED, node, "a function whose body is a chart");
+                        self.coder.say(&codes::NOT_CARRIED, node, say!("a function whose body is a chart"));
                         Vec::new()
                     }
                     Some((language, node)) => self.coder.body(language, node, &place),
@@ -380,7 +380,7 @@ fn flags(maker: &mut Maker, index: usize, vars: &[VarDecl]) -> (Vec<Stmt>, Optio
             }
             "SFCPAUSE" => guard = Some(held(guard, value(), at)),
             other if other.starts_with("SFC") => {
-                let what = "variables by which CODESYS tells of its charts; nothing writes them here";
+                let what = say!("variables by which CODESYS tells of its charts; nothing writes them here");
                 let range = decl.at.0.start as usize..decl.at.0.end as usize;
                 maker.coder.report.element(&codes::DIFFERENT, "SFC flags", &range, what);
             }

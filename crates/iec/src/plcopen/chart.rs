@@ -6,7 +6,7 @@ use std::collections::{HashMap, HashSet};
 use g7_model::codes;
 use g7_model::{
     Body, Chart, ChartItem, ChartKind, Expr, ExprKind, Layout, Name, NamedAction, PlaceAt, Placed, Step,
-    StepKind, Transition, Type, VarKind,
+    StepKind, Transition, Type, VarKind, say,
 };
 
 use super::actions;
@@ -121,9 +121,9 @@ impl<'a> Maker<'_, '_, '_, 'a> {
             let name = taken.give(&wanted);
             if name != wanted || word(object.node, "name").is_none() {
                 let what = if word(object.node, "name").is_none() {
-                    format!("a step without a name; it is called `{name}`")
+                    say!("a step without a name; it is called `{name}`")
                 } else {
-                    format!("a second step is called `{wanted}`; it is renamed to `{name}`")
+                    say!("a second step is called `{wanted}`; it is renamed to `{name}`")
                 };
                 self.coder.say(&codes::RENAMED, object.node, what);
             }
@@ -179,7 +179,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
     /// The expansion of a macro-step, made after the chart that uses it.
     fn macro_step(&mut self, draft: &Draft<'_, 'a>, node: Xml<'a>, name: &Name) -> StepKind {
         let Some((Language::Sfc, body)) = tree::body(node) else {
-            let what = format!("the macro-step `{}` has no chart within it; it is a plain step", name.text);
+            let what = say!("the macro-step `{}` has no chart within it; it is a plain step", name.text);
             self.coder.say(&codes::BAD_MACRO, node, what);
             return StepKind::Plain;
         };
@@ -274,7 +274,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
     /// An action that is a chart: becomes a second chart that evolves while the action is active.
     fn sub_chart(&mut self, draft: &mut Draft<'_, 'a>, node: Xml<'a>, body: Xml<'a>, name: &str) {
         let at = self.coder.report.span(&head(node));
-        let what = format!(
+        let what = say!(
             "the action `{name}` is a chart; it is one beside the other, which evolves while the action is active"
         );
         self.coder.say(&codes::DIFFERENT, node, what);
@@ -327,12 +327,12 @@ impl<'a> Maker<'_, '_, '_, 'a> {
                 | "rightPowerRail"
                 | "block" => {}
                 "coil" | "outVariable" | "inOutVariable" | "label" | "jump" | "return" => {
-                    let what = format!("a `{}` in a chart, which belongs to no action", object.kind);
+                    let what = say!("a `{}` in a chart, which belongs to no action", object.kind);
                     self.coder.say(&codes::NOT_CARRIED, object.node, what);
                 }
                 other => {
-                    let what = format!("a `{other}` is not known");
-                    self.coder.report.element(&codes::UNKNOWN_ELEMENT, other, &head(object.node), &what);
+                    let what = say!("a `{other}` is not known");
+                    self.coder.report.element(&codes::UNKNOWN_ELEMENT, other, &head(object.node), what);
                 }
             }
         }

@@ -1,7 +1,7 @@
 //! The condition of a transition: written in any language, given by name, or wired.
 
 use g7_model::codes;
-use g7_model::{ChartItem, Expr, Name, Section, Stmt, StmtKind};
+use g7_model::{ChartItem, Expr, Name, Section, Stmt, StmtKind, say};
 
 use super::draft::{Draft, Maker, block};
 use super::graph::Slot;
@@ -31,7 +31,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
             _ => None,
         };
         let Some(value) = value else {
-            self.coder.say(&codes::BAD_TEXT, node, "a transition without a condition");
+            self.coder.say(&codes::BAD_TEXT, node, say!("a transition without a condition"));
             return nodes::bad(at);
         };
         let by_wire = object.inputs.iter().any(|i| i.slot == Slot::Condition && i.negated);
@@ -79,7 +79,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
                 value?
             }
             Language::Sfc => {
-                self.coder.say(&codes::NOT_CARRIED, body, "a condition that is a chart");
+                self.coder.say(&codes::NOT_CARRIED, body, say!("a condition that is a chart"));
                 return None;
             }
         };
@@ -115,7 +115,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
         let Some(name) =
             name.map(line).filter(|n| draft.labels.insert(format!("section {}", n.to_uppercase())))
         else {
-            self.coder.say(&codes::NOT_CARRIED, body, "a condition of several statements");
+            self.coder.say(&codes::NOT_CARRIED, body, say!("a condition of several statements"));
             return None;
         };
         let mut of_section = draft.place.clone();
@@ -136,7 +136,8 @@ impl<'a> Maker<'_, '_, '_, 'a> {
         if raw.is_empty() {
             return;
         }
-        let what = "a block with memory before a condition; it runs in every scan, before the chart evolves";
+        let what =
+            say!("a block with memory before a condition; it runs in every scan, before the chart evolves");
         self.coder.say(&codes::DIFFERENT, node, what);
         let mut more = self.coder.statements(raw, &draft.place);
         draft.pre.append(&mut more);

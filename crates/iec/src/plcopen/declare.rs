@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{Name, Type, VarDecl, VarKind};
+use g7_model::{Name, Type, VarDecl, VarKind, say};
 
 use super::read::{Pou, Section, SectionKind};
 use super::tree::{Xml, documentation, head, kid, text};
@@ -52,7 +52,7 @@ pub(super) fn of_unit(plan: &Plan, unit: &Unit, pou: &Pou, report: &mut Report) 
                 if plan.globals.contains_key(&upper) {
                     continue;
                 }
-                let what = format!("no global variable is called `{}`; it is one of its own", name.text);
+                let what = say!("no global variable is called `{}`; it is one of its own", name.text);
                 report.say(&codes::OPEN_LINK, &head(*variable), what);
             }
             if !seen.insert(upper.clone()) {
@@ -72,13 +72,13 @@ pub(super) fn of_unit(plan: &Plan, unit: &Unit, pou: &Pou, report: &mut Report) 
 }
 
 fn twice(name: &Name, report: &mut Report) {
-    let what = format!("`{}` is declared twice", name.text);
+    let what = say!("`{}` is declared twice", name.text);
     report.put(g7_model::Problem::new(&codes::TWICE, name.at.0, what));
 }
 
 fn named(variable: Xml, report: &mut Report) -> Option<Name> {
     let Some(name) = name_of(variable) else {
-        report.say(&codes::LEFT_OUT, &head(variable), "a variable without a name; it is left out");
+        report.say(&codes::LEFT_OUT, &head(variable), say!("a variable without a name; it is left out"));
         return None;
     };
     let at = text(variable, "name").map_or_else(|| head(variable), |t| t.at);
@@ -98,12 +98,12 @@ fn declaration(
     let ty = match types::known(variable) {
         Known::Type(ty) => ty,
         Known::Derived(ty) => {
-            let what = format!("`{}` is of type `{}`, which has no counterpart", name.text, line(&ty));
+            let what = say!("`{}` is of type `{}`, which has no counterpart", name.text, line(&ty));
             report.say(&codes::NOT_CARRIED, &head(variable), what);
             return None;
         }
         Known::None => {
-            let what = format!("`{}` is of a type that has no counterpart", name.text);
+            let what = say!("`{}` is of a type that has no counterpart", name.text);
             report.say(&codes::NOT_CARRIED, &head(variable), what);
             return None;
         }
@@ -115,7 +115,7 @@ fn declaration(
         init = Some(types::zero(ty, at));
     }
     if kind == VarKind::Input && section.kind == SectionKind::InOut {
-        let what = "a variable of both directions; it is an input here";
+        let what = say!("a variable of both directions; it is an input here");
         report.say(&codes::DIFFERENT, &head(variable), what);
     }
     Some(VarDecl {
@@ -168,8 +168,8 @@ fn address(variable: Xml, report: &mut Report) -> Option<Name> {
     let text = written(variable)?;
     let word = line(text.text.trim());
     if let Some(kind) = word.strip_suffix('*') {
-        let what = format!("an address that is given elsewhere (`{kind}*`); the variable has none");
-        report.element(&codes::LEFT_OUT, "address", &text.at, &what);
+        let what = say!("an address that is given elsewhere (`{kind}*`); the variable has none");
+        report.element(&codes::LEFT_OUT, "address", &text.at, what);
         return None;
     }
     Some(Name::new(word, report.span(&text.at)))

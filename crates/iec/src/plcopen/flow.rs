@@ -3,7 +3,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 
 use super::graph::{Graph, Object};
 use super::tree::{head, word};
@@ -52,13 +52,13 @@ pub(super) fn flow(graph: &Graph, report: &mut Report) -> Flow {
             before.push(BTreeSet::new());
         }
         if to.is_empty() && before.iter().all(BTreeSet::is_empty) {
-            let what = "a transition with no step before it and none behind it; it is left out";
+            let what = say!("a transition with no step before it and none behind it; it is left out");
             walk.report.say(&codes::BAD_LINK, &head(object.node), what);
             continue;
         }
         if to.is_empty() || before.iter().any(BTreeSet::is_empty) {
-            let side = if to.is_empty() { "behind" } else { "before" };
-            let what = format!("a transition with no step {side} it");
+            let side = if to.is_empty() { say!("behind") } else { say!("before") };
+            let what = say!("a transition with no step {side} it");
             walk.report.say(&codes::OPEN_LINK, &head(object.node), what);
         }
         for from in before.into_iter().filter(|f| !(f.is_empty() && to.is_empty())) {
@@ -88,7 +88,11 @@ impl Walk<'_, '_, '_> {
         }
         if !self.full {
             self.full = true;
-            self.report.say(&codes::TOO_LARGE, &(0..0), "the lines of this chart are too many to follow");
+            self.report.say(
+                &codes::TOO_LARGE,
+                &(0..0),
+                say!("the lines of this chart are too many to follow"),
+            );
         }
         false
     }
@@ -115,7 +119,7 @@ impl Walk<'_, '_, '_> {
         let name = word(jump.node, "targetName").unwrap_or("");
         let target = names.get(&name.to_uppercase()).copied();
         if target.is_none() {
-            let what = format!("a jump to `{name}`, which is no step of this chart");
+            let what = say!("a jump to `{name}`, which is no step of this chart");
             self.report.say(&codes::BAD_LINK, &head(jump.node), what);
         }
         target
@@ -142,7 +146,7 @@ impl Walk<'_, '_, '_> {
                 // In CODESYS the branches of a divergence end in a convergence, also those that
                 // jump.
                 "jumpStep" => {}
-                _ => self.odd(object, from, "a transition"),
+                _ => self.odd(object, from, say!("a transition")),
             }
         }
         found
@@ -161,7 +165,7 @@ impl Walk<'_, '_, '_> {
     fn steps(&mut self, end: &Object, index: usize, depth: usize) -> Vec<BTreeSet<usize>> {
         let Some(from) = self.graph.get(index) else { return Vec::new() };
         if depth > 60 || !self.may() {
-            let what = "lines that lead through too many divergences, or in a circle without a step";
+            let what = say!("lines that lead through too many divergences, or in a circle without a step");
             self.report.element(&codes::BAD_LINK, "circle", &head(end.node), what);
             return Vec::new();
         }
@@ -187,17 +191,17 @@ impl Walk<'_, '_, '_> {
                 ways
             }
             _ => {
-                self.odd(end, from, "a step");
+                self.odd(end, from, say!("a step"));
                 Vec::new()
             }
         }
     }
 
-    fn odd(&mut self, end: &Object, from: &Object, wanted: &str) {
-        let what = format!("a line leads to this `{}` from a `{}`, not from {wanted}", end.kind, from.kind);
+    fn odd(&mut self, end: &Object, from: &Object, wanted: Said) {
+        let what = say!("a line leads to this `{}` from a `{}`, not from {wanted}", end.kind, from.kind);
         let problem = g7_model::Problem::new(&codes::BAD_LINK, self.report.span(&head(end.node)), what);
         let there = self.report.span(&head(from.node));
-        self.report.put(problem.related(there, "where it comes from"));
+        self.report.put(problem.related(there, say!("where it comes from")));
     }
 }
 

@@ -4,7 +4,7 @@
 use std::collections::HashMap;
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 
 use super::tree::{self, Xml, head, kid, kids, tag, word};
 use crate::report::Report;
@@ -148,8 +148,8 @@ impl<'a> Reader<'a> {
         if let Some(id) = word(node, "localId")
             && self.ids.insert(id.to_string(), index).is_some()
         {
-            let what = format!("a second object has the localId {id}");
-            report.element(&codes::BAD_LINK, "localId", &head(node), &what);
+            let what = say!("a second object has the localId {}", Said::foreign(id));
+            report.element(&codes::BAD_LINK, "localId", &head(node), what);
         }
         if kind == "connector"
             && let Some(name) = word(node, "name").or_else(|| word(node, "label"))
@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
             let id = loose.id.text.trim();
             let known = self.ids.get(id).map(|i| (*i, loose.pin.clone()));
             let Some((from, pin)) = known.or_else(|| self.points.get(id).cloned()) else {
-                let what = format!("a wire comes from the object {id}, which is not there");
+                let what = say!("a wire comes from the object {}, which is not there", Said::foreign(id));
                 report.say(&codes::BAD_LINK, &loose.id.at, what);
                 continue;
             };

@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use g7_model::codes;
 use g7_model::{
     ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Problem, Stmt, StmtKind, Target,
-    VarDecl, VarKind,
+    VarDecl, VarKind, say,
 };
 
 use crate::report::Report;
@@ -53,7 +53,8 @@ fn change(decl: &mut VarDecl, chart: Option<&str>, written: &Written, report: &m
         decl.kind = VarKind::Var;
         // The address is that of an input.
         decl.address = None;
-        let what = "an input that the program writes as well; it is a variable here, without an address";
+        let what =
+            say!("an input that the program writes as well; it is a variable here, without an address");
         report.put(Problem::new(&codes::DIFFERENT, decl.at.0, what));
     }
 }

@@ -4,7 +4,7 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{Arg, Expr, ExprKind, Name, Path, Span, StandardFunction, Stmt, StmtKind, UnaryOp};
+use g7_model::{Arg, Expr, ExprKind, Name, Path, Said, Span, StandardFunction, Stmt, StmtKind, UnaryOp, say};
 
 use super::graph::{Edge, Graph, Input, Object, Slot, Wire};
 use super::tree::{Xml, flag, head, place, word};
@@ -114,7 +114,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
         if !self.full {
             self.full = true;
             let code = if depth > DEEPEST { &codes::TOO_DEEP } else { &codes::TOO_LARGE };
-            self.report.say(code, &head(at.node), "a network with too many objects on one way");
+            self.report.say(code, &head(at.node), say!("a network with too many objects on one way"));
         }
         false
     }
@@ -150,7 +150,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
                 self.put(Some(value), back, at);
             }
             _ => {
-                let what = "a jump to a label of the network is not carried over";
+                let what = say!("a jump to a label of the network is not carried over");
                 self.report.say(&codes::NOT_CARRIED, &head(object.node), what);
             }
         }
@@ -187,7 +187,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
     /// The variable that an object names.
     fn target(&mut self, object: &Object) -> Option<Expr> {
         let Some(text) = object.text().filter(|t| !t.text.trim().is_empty()) else {
-            let what = format!("a `{}` without a variable", object.kind);
+            let what = say!("a `{}` without a variable", object.kind);
             self.report.say(&codes::BAD_TEXT, &head(object.node), what);
             return None;
         };
@@ -239,7 +239,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
             }
         }
         value.unwrap_or_else(|| {
-            let what = format!("nothing is wired to this `{}`; it is taken for FALSE", object.kind);
+            let what = say!("nothing is wired to this `{}`; it is taken for FALSE", object.kind);
             self.report.say(&codes::OPEN_LINK, &head(object.node), what);
             nodes::boolean(false, at)
         })
@@ -299,7 +299,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
             "coil" => self.flow(object, depth),
             "continuation" => match self.graph.connector(object).and_then(|i| self.graph.get(i)) {
                 Some(connector) => self.flow(connector, depth),
-                None => self.nothing(object, "a continuation without its connector"),
+                None => self.nothing(object, say!("a continuation without its connector")),
             },
             "connector" => self.flow(object, depth),
             "step" | "macroStep" => {
@@ -314,8 +314,8 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
             }
             "block" => self.function(object, wire, at, depth),
             other => {
-                let what = format!("a value cannot come from a `{other}`");
-                self.nothing(object, &what)
+                let what = say!("a value cannot come from a `{other}`");
+                self.nothing(object, what)
             }
         }
     }
@@ -333,7 +333,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
         if negated { nodes::not(value, at) } else { value }
     }
 
-    fn nothing(&mut self, object: &Object, what: &str) -> Expr {
+    fn nothing(&mut self, object: &Object, what: Said) -> Expr {
         let at = self.span(object);
         self.report.say(&codes::BAD_LINK, &head(object.node), what);
         nodes::bad(at)
@@ -343,7 +343,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
         match object.text().filter(|t| !t.text.trim().is_empty()) {
             Some(text) => self.parse(&text),
             None => {
-                let what = format!("a `{}` without a variable", object.kind);
+                let what = say!("a `{}` without a variable", object.kind);
                 self.report.say(&codes::BAD_TEXT, &head(object.node), what);
                 nodes::bad(self.span(object))
             }
@@ -353,7 +353,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
     /// The result of a function or operator.
     fn function(&mut self, object: &Object<'a>, wire: &Wire, at: Span, depth: usize) -> Expr {
         if !self.busy.insert(wire.from) {
-            return self.nothing(object, "a value that depends on itself without a variable between");
+            return self.nothing(object, say!("a value that depends on itself without a variable between"));
         }
         let mut args = Vec::new();
         let mut enable = None;

@@ -1,6 +1,6 @@
 //! Reads the units of a project from XML elements: its POUs, global variables and tasks.
 
-use g7_model::{Nanos, codes};
+use g7_model::{Nanos, codes, say};
 use roxmltree::Document;
 
 use super::tree::{self, Xml, head, kid, kids, tag, text, word};
@@ -81,7 +81,7 @@ pub(super) fn project<'a>(tree: &'a Document<'a>, report: &mut Report) -> Projec
     let root = tree.root_element();
     let mut project = Project { at: head(root), ..Project::default() };
     if tag(root) != "project" {
-        let what = format!("the first element is `{}`; that of TC6 XML is `project`", root.tag_name().name());
+        let what = say!("the first element is `{}`; that of TC6 XML is `project`", root.tag_name().name());
         report.say(&codes::NOT_JGRAFCHART, &project.at, what);
         return project;
     }
@@ -115,11 +115,11 @@ impl<'a> Reader<'_, 'a> {
                     self.project.globals.push(section);
                 }
                 "dataType" | "dataTypeDecl" => {
-                    let what = "a type of one's own; variables of it are left out";
+                    let what = say!("a type of one's own; variables of it are left out");
                     self.report.element(&codes::LEFT_OUT, "dataType", &head(child), what);
                 }
                 "accessVars" | "configVars" => {
-                    let what = "access paths and configured addresses are left out";
+                    let what = say!("access paths and configured addresses are left out");
                     self.report.element(&codes::LEFT_OUT, &tag(child), &head(child), what);
                 }
                 _ => self.within(child, interval),
@@ -133,7 +133,7 @@ impl<'a> Reader<'_, 'a> {
             ("function", _) | (_, Some("function")) => PouKind::Function,
             ("program", _) | (_, Some("program") | None) => PouKind::Program,
             (_, Some(other)) => {
-                let what = format!("`{other}` is no kind of unit; it is read as a program");
+                let what = say!("`{other}` is no kind of unit; it is read as a program");
                 self.report.say(&codes::BAD_VALUE, &head(node), what);
                 PouKind::Program
             }
@@ -149,7 +149,7 @@ impl<'a> Reader<'_, 'a> {
         };
         parts(node, &mut pou);
         if kids(node).filter(|n| tag(*n) == "body").count() > 1 {
-            let what = "a unit with several bodies (worksheets); only the first is read";
+            let what = say!("a unit with several bodies (worksheets); only the first is read");
             self.report.say(&codes::NOT_CARRIED, &head(node), what);
         }
         self.project.pous.push(pou);
@@ -165,7 +165,7 @@ impl<'a> Reader<'_, 'a> {
         let word = text(node, "interval").filter(|t| !t.text.trim().is_empty())?;
         let time = duration(word.text.trim());
         if time.is_none() {
-            let what = format!("`{}` is no interval that can be read", word.text.trim());
+            let what = say!("`{}` is no interval that can be read", word.text.trim());
             self.report.say(&codes::DIFFERENT, &word.at, what);
         }
         time.filter(|t| *t > Nanos::ZERO)

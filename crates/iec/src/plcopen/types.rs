@@ -1,7 +1,7 @@
 //! Types and initial values of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Span, Type, UnaryOp};
+use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Span, Type, UnaryOp, say};
 
 use super::read::{duration, type_of};
 use super::tree::{Xml, head, kid, kids, tag, word};
@@ -63,15 +63,15 @@ pub(super) fn judge(variable: Xml, report: &mut Report) {
     for inner in node.descendants().filter(|n| n.is_element()) {
         match tag(inner).as_str() {
             bits @ ("BYTE" | "WORD" | "DWORD" | "LWORD") => {
-                let what = format!("bits of `{bits}` are carried over as a whole number without a sign");
-                report.element(&codes::DIFFERENT, bits, &head(inner), &what);
+                let what = say!("bits of `{bits}` are carried over as a whole number without a sign");
+                report.element(&codes::DIFFERENT, bits, &head(inner), what);
             }
             "subrangeSigned" | "subrangeUnsigned" => {
-                let what = "the range of a variable is left out";
+                let what = say!("the range of a variable is left out");
                 report.element(&codes::LEFT_OUT, "subrange", &head(inner), what);
             }
             "wstring" | "WSTRING" => {
-                let what = "a text of wide characters holds UTF-8, its length in bytes";
+                let what = say!("a text of wide characters holds UTF-8, its length in bytes");
                 report.element(&codes::DIFFERENT, "wstring", &head(inner), what);
             }
             _ => {}
@@ -83,7 +83,7 @@ pub(super) fn judge(variable: Xml, report: &mut Report) {
 pub(super) fn initial(variable: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
     let value = kid(variable, "initialValue")?;
     let Some(simple) = kid(value, "simpleValue") else {
-        let what = "initial values of arrays and structures are not carried over";
+        let what = say!("initial values of arrays and structures are not carried over");
         report.say(&codes::NOT_CARRIED, &head(value), what);
         return None;
     };

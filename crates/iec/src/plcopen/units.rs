@@ -7,7 +7,7 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use g7_model::codes;
-use g7_model::{Nanos, Type};
+use g7_model::{Nanos, Type, say};
 
 use super::read::{Pou, PouKind, Project, Section, SectionKind};
 use super::tree::{self, Language, Xml, head, tag, text};
@@ -89,10 +89,10 @@ pub(super) fn plan<'a>(project: &'a Project<'a>, report: &mut Report) -> Plan<'a
     for (index, pou) in project.pous.iter().enumerate() {
         let upper = pou.name.text.trim().to_uppercase();
         if let Some(first) = by_name.get(&upper) {
-            let what = format!("a second unit is called `{}`", line(&pou.name.text));
+            let what = say!("a second unit is called `{}`", line(&pou.name.text));
             let problem = g7_model::Problem::new(&codes::TWICE, report.span(&pou.name.at), what);
             let there = project.pous.get(*first).map(|p| report.span(&p.name.at)).unwrap_or_default();
-            report.put(problem.related(there, "the first of this name"));
+            report.put(problem.related(there, say!("the first of this name")));
             continue;
         }
         if pou.kind == PouKind::Function {
@@ -238,8 +238,7 @@ impl<'a> Planner<'_, 'a> {
                 let of_file = of_file.filter(|u| !self.charts.has(u)).collect();
                 self.program(index, chart, pou.node, None, of_file);
             } else if !is_chart(pou) {
-                let what =
-                    format!("the function block `{}` is not used; it is left out", line(&pou.name.text));
+                let what = say!("the function block `{}` is not used; it is left out", line(&pou.name.text));
                 self.report.say(&codes::LEFT_OUT, &head(pou.node), what);
             } else if !self.plan.units.iter().any(|u| u.pou == index) {
                 let unit = self.unit(index, chart, pou.node, &[]);
@@ -271,14 +270,18 @@ impl<'a> Planner<'_, 'a> {
         let Some(source) = project.pous.get(pou) else { return index };
         self.elements = self.elements.saturating_add(source.node.descendants().count());
         if above.contains(&pou) || above.len() > DEEPEST {
-            let what = format!("the block `{}` contains itself", line(&source.name.text));
+            let what = say!("the block `{}` contains itself", line(&source.name.text));
             self.report.say(&codes::NOT_CARRIED, &head(node), what);
             return index;
         }
         if index >= MOST_UNITS || self.elements > MOST_ELEMENTS {
             if !self.full {
                 self.full = true;
-                self.report.say(&codes::TOO_LARGE, &head(node), "more instances of blocks than are read");
+                self.report.say(
+                    &codes::TOO_LARGE,
+                    &head(node),
+                    say!("more instances of blocks than are read"),
+                );
             }
             return index;
         }
@@ -338,7 +341,7 @@ impl<'a> Planner<'_, 'a> {
         let wanted = if wanted.is_empty() { "Chart".to_string() } else { wanted };
         let name = self.charts.give(&wanted);
         if name != wanted {
-            let what = format!("something else is called `{wanted}`; the chart is called `{name}`");
+            let what = say!("something else is called `{wanted}`; the chart is called `{name}`");
             self.report.say(&codes::RENAMED, &head(node), what);
         }
         name

@@ -4,7 +4,7 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::codes;
-use g7_model::{Arg, ExprKind, Name, Path, Span, Stmt, StmtKind, VarKind};
+use g7_model::{Arg, ExprKind, Name, Path, Span, Stmt, StmtKind, VarKind, say};
 
 use super::unit::{Part, Source, Unit, UnitKind};
 use crate::nodes;
@@ -105,10 +105,8 @@ impl Expander<'_> {
             return;
         }
         if depth > DEEPEST {
-            let what = format!(
-                "the block `{}` contains itself",
-                variable.decl.names.first().map_or("", |n| &n.text)
-            );
+            let what =
+                say!("the block `{}` contains itself", variable.decl.names.first().map_or("", |n| &n.text));
             return self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         }
         instances.insert(name.text.to_uppercase(), (name.text.to_string(), block));
@@ -141,7 +139,7 @@ impl Expander<'_> {
     fn spend(&mut self, count: usize, at: Span) -> bool {
         if self.left < count {
             if self.left > 0 {
-                let what = "more instances and calls of function blocks than are read";
+                let what = say!("more instances and calls of function blocks than are read");
                 self.report.put(g7_model::Problem::new(&codes::TOO_LARGE, at, what));
             }
             self.left = 0;
@@ -200,7 +198,7 @@ impl Expander<'_> {
         if depth > DEEPEST || !self.spend(1 + count(&body), at) {
             return Vec::new();
         }
-        let variable = |own: &str| nodes::name(&[&format!("{name}.{own}")], at);
+        let variable = |own: &str| nodes::name(&[say!("{name}.{own}")], at);
         let inputs: Vec<&Variable> =
             vars.iter().filter(|v| matches!(v.section, Section::Input | Section::InOut)).collect();
         let mut list = Vec::new();
@@ -213,7 +211,7 @@ impl Expander<'_> {
             };
             let Some((meant, own)) = meant.and_then(|v| Some((v, v.decl.names.first()?))) else {
                 let given = arg.name.as_ref().map_or("", |n| &*n.text);
-                let what = format!("the function block of `{name}` has no input `{given}`");
+                let what = say!("the function block of `{name}` has no input `{given}`");
                 self.report.put(g7_model::Problem::new(&codes::UNKNOWN_OBJECT, arg.value.at.0, what));
                 continue;
             };
@@ -222,7 +220,7 @@ impl Expander<'_> {
                     links.insert(own.text.to_uppercase(), path.clone());
                 }
                 (Section::InOut, _) => {
-                    let what = "what a block changes is a variable";
+                    let what = say!("what a block changes is a variable");
                     self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, arg.value.at.0, what));
                 }
                 _ if arg.output => behind.push(nodes::assign(arg.value.clone(), variable(&own.text), at)),
@@ -254,7 +252,7 @@ impl Expander<'_> {
             return body;
         }
         if returns(&body, false) {
-            let what = "RETURN within a loop of a function block";
+            let what = say!("RETURN within a loop of a function block");
             self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
             return body;
         }

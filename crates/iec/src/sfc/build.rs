@@ -6,7 +6,7 @@ use g7_model::codes;
 use g7_model::{
     Action, ActionKind, BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
     Function, Item, Literal, Local, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName, Step,
-    StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind,
+    StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
 };
 
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
@@ -69,18 +69,17 @@ fn paces(source: &Source, report: &mut Report) -> Paces {
         if let Some(name) = task
             && of(name).is_none()
         {
-            let what = format!("there is no task `{}`", name.text);
+            let what = say!("there is no task `{}`", name.text);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, name.at.0, what));
         }
         let name = instance.unit.text.to_uppercase();
         let known = source.units.iter().any(|u| u.name.text.to_uppercase() == name);
         if !known {
-            let what = format!("there is no program `{}`", instance.unit.text);
+            let what = say!("there is no program `{}`", instance.unit.text);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, instance.unit.at.0, what));
         }
         if source.instances.iter().filter(|i| i.unit.text.to_uppercase() == name).count() > 1 {
-            let what =
-                format!("the program `{}` runs more than once; one is carried over", instance.unit.text);
+            let what = say!("the program `{}` runs more than once; one is carried over", instance.unit.text);
             report.put(Problem::new(&codes::NOT_CARRIED, instance.at, what));
         }
         if let Some(interval) = interval {
@@ -116,9 +115,8 @@ impl Builder<'_> {
                 continue;
             }
             let name = variable.decl.names.first().map_or("", |n| &*n.text);
-            let what = format!(
-                "no global variable `{name}` is declared in this file; it is one with its first value"
-            );
+            let what =
+                say!("no global variable `{name}` is declared in this file; it is one with its first value");
             self.report.put(Problem::new(&codes::DIFFERENT, variable.decl.at.0, what));
             items.push(Item::Var(variable.decl.clone()));
         }
@@ -130,12 +128,12 @@ impl Builder<'_> {
         let Some(ty) = &variable.unknown else { return true };
         let own = self.source.units.iter().find(|u| u.name.text.eq_ignore_ascii_case(&ty.text));
         let what = match own {
-            Some(unit) if unit.is_chart() => format!(
+            Some(unit) if unit.is_chart() => say!(
                 "an instance of `{}`; that chart is carried over once, on its own, and not as a part of this unit",
                 ty.text
             ),
-            Some(_) => format!("an instance of `{}`, which is no function block", ty.text),
-            None => format!("there is no type `{}`", ty.text),
+            Some(_) => say!("an instance of `{}`, which is no function block", ty.text),
+            None => say!("there is no type `{}`", ty.text),
         };
         self.report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         false
@@ -188,7 +186,7 @@ impl Builder<'_> {
         let at = units.first()?.0.at;
         if units.len() > 1 {
             for (unit, _) in units.iter().filter(|u| super::blocks::returns(u.1, true)) {
-                let what = "RETURN in one of several programs: the others would not run either";
+                let what = say!("RETURN in one of several programs: the others would not run either");
                 self.report.put(Problem::new(&codes::NOT_CARRIED, unit.name.at.0, what));
             }
         }
@@ -202,14 +200,14 @@ impl Builder<'_> {
             return (Vec::new(), self.function(unit).map(Item::Function));
         }
         if !self.runs(unit) {
-            let what = format!("the function block `{}` is not used; it is left out", unit.name.text);
+            let what = say!("the function block `{}` is not used; it is left out", unit.name.text);
             self.report.put(Problem::new(&codes::LEFT_OUT, unit.name.at.0, what));
             return (Vec::new(), None);
         }
         let vars = self.variables(unit);
         let block = Block { locals: Vec::new(), statements: unit.body.clone(), at: unit.at.into() };
         if unit.is_chart() && !unit.body.is_empty() {
-            let what = "statements in a unit that is a chart; they belong into an action";
+            let what = say!("statements in a unit that is a chart; they belong into an action");
             self.report.say(&codes::NOT_CARRIED, &unit.body_at, what);
         }
         if !unit.is_chart() && alone {
@@ -249,7 +247,7 @@ impl Builder<'_> {
     fn lost_actions(&mut self, unit: &Unit) {
         for part in &unit.parts {
             if let Part::Action { name, .. } = part {
-                let what = format!("the action `{}` of a unit without steps is left out", name.text);
+                let what = say!("the action `{}` of a unit without steps is left out", name.text);
                 self.report.put(Problem::new(&codes::LEFT_OUT, name.at.0, what));
             }
         }
@@ -265,9 +263,9 @@ impl Builder<'_> {
             let name = variable.decl.names.first().map_or("", |n| &*n.text);
             let what = match variable.section {
                 Section::InOut => {
-                    Some(format!("`{name}` is a variable of the chart; nothing outside is changed by it"))
+                    Some(say!("`{name}` is a variable of the chart; nothing outside is changed by it"))
                 }
-                Section::Temp => Some(format!("`{name}` keeps its value from scan to scan")),
+                Section::Temp => Some(say!("`{name}` keeps its value from scan to scan")),
                 _ => None,
             };
             if let Some(what) = what {
@@ -287,7 +285,7 @@ impl Builder<'_> {
     fn link(&mut self, decls: &mut [VarDecl], name: &Name, value: &Expr) {
         let named = |d: &&mut VarDecl| d.names.iter().any(|n| n.text.eq_ignore_ascii_case(&name.text));
         let Some(decl) = decls.iter_mut().find(named) else {
-            let what = format!("the program has no variable `{}`", name.text);
+            let what = say!("the program has no variable `{}`", name.text);
             return self.report.put(Problem::new(&codes::UNKNOWN_OBJECT, name.at.0, what));
         };
         match &value.kind {
@@ -296,7 +294,8 @@ impl Builder<'_> {
             }
             ExprKind::Bad => {}
             _ => {
-                let what = "a variable of a program stands at an address; other values have no counterpart";
+                let what =
+                    say!("a variable of a program stands at an address; other values have no counterpart");
                 self.report.put(Problem::new(&codes::NOT_CARRIED, value.at.0, what));
             }
         }
@@ -344,7 +343,7 @@ impl Builder<'_> {
 
     fn transition(&mut self, unit: &Unit, t: &Transition) -> Written {
         if t.priority == Some(0) {
-            let what = format!("priority 0 in `{}`; 1 is the highest", unit.name.text);
+            let what = say!("priority 0 in `{}`; 1 is the highest", unit.name.text);
             self.report.put(Problem::new(&codes::BAD_VALUE, t.at, what));
         }
         Written {
@@ -374,7 +373,7 @@ impl Builder<'_> {
                     params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));
                 }
                 Section::Output | Section::InOut => {
-                    let what = "a function gives one result and changes none of its inputs";
+                    let what = say!("a function gives one result and changes none of its inputs");
                     self.report.put(Problem::new(&codes::NOT_CARRIED, decl.at.0, what));
                 }
                 _ => locals.push(Local {
@@ -445,7 +444,7 @@ fn numbers_as_conditions(document: &mut Document, report: &mut Report) {
                 continue;
             }
             let at = t.receptivity.at;
-            let what = format!("`{}` is a number, no condition; it is compared with 0", name.text);
+            let what = say!("`{}` is a number, no condition; it is compared with 0", name.text);
             report.put(Problem::new(&codes::DIFFERENT, at.0, what));
             let zero = Expr { kind: ExprKind::Literal(Literal::Int(0, None)), at };
             let kind = ExprKind::Binary(BinaryOp::Ne, Box::new(t.receptivity.clone()), Box::new(zero));

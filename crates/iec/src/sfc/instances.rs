@@ -10,7 +10,7 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
-use g7_model::{Arg, Name, Path, Problem, Span, Stmt, StmtKind, VarKind, codes};
+use g7_model::{Arg, Name, Path, Problem, Span, Stmt, StmtKind, VarKind, codes, say};
 
 use super::unit::{Instance, Source, Unit, UnitKind};
 use crate::nodes::{self, Taken};
@@ -51,14 +51,14 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
             used.insert(block.name.text.to_uppercase());
             let size = block.parts.len() + block.vars.len() + 1;
             if size > left {
-                let what = "more instances of function blocks than are read";
+                let what = say!("more instances of function blocks than are read");
                 report.put(Problem::new(&codes::TOO_LARGE, variable.decl.at.0, what));
                 continue;
             }
             left -= size;
             let own = taken.give(&name.text);
             if own != *name.text {
-                let what = format!("something else is called `{}`; the chart is called `{own}`", name.text);
+                let what = say!("something else is called `{}`; the chart is called `{own}`", name.text);
                 report.put(Problem::new(&codes::RENAMED, name.at.0, what));
             }
             let given = block.vars.iter().filter(|v| v.section == Section::Input);
@@ -105,8 +105,9 @@ fn instance(block: &Unit, name: Name, report: &mut Report) -> Unit {
     unit.name = name;
     for variable in &mut unit.vars {
         if variable.section == Section::InOut {
-            let what =
-                "a variable of both directions of a block with a chart: nothing outside is changed by it";
+            let what = say!(
+                "a variable of both directions of a block with a chart: nothing outside is changed by it"
+            );
             report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         }
         if matches!(variable.section, Section::Input | Section::Output | Section::InOut) {
@@ -130,7 +131,7 @@ fn split(program: &mut Unit, charts: &HashMap<String, Chart>, report: &mut Repor
     let last = body.iter().rposition(|s| called(s).is_some());
     let first = body.iter().position(|s| called(s).is_some());
     if last.is_some() && super::blocks::returns(&body, true) {
-        let what = "RETURN in a program that calls a chart: the chart would evolve behind it";
+        let what = say!("RETURN in a program that calls a chart: the chart would evolve behind it");
         report.put(Problem::new(&codes::NOT_CARRIED, program.name.at.0, what));
     }
     let mut seen = HashSet::new();
@@ -138,7 +139,9 @@ fn split(program: &mut Unit, charts: &HashMap<String, Chart>, report: &mut Repor
     for (number, stmt) in body.into_iter().enumerate() {
         let Some(chart) = called(&stmt) else {
             if first.is_some_and(|f| f < number) && last.is_some_and(|l| number < l) {
-                let what = "charts of called blocks evolve together, behind this; what it reads of them is of the scan before";
+                let what = say!(
+                    "charts of called blocks evolve together, behind this; what it reads of them is of the scan before"
+                );
                 report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, what));
             }
             within(&stmt, charts, &mut seen, report);
@@ -148,7 +151,7 @@ fn split(program: &mut Unit, charts: &HashMap<String, Chart>, report: &mut Repor
         };
         let StmtKind::Call(_, args) = &stmt.kind else { continue };
         if !seen.insert(chart.name.clone()) {
-            let what = format!("`{}` is called twice in a scan; its chart evolves once", chart.name);
+            let what = say!("`{}` is called twice in a scan; its chart evolves once", chart.name);
             report.put(Problem::new(&codes::NOT_CARRIED, stmt.at.0, what));
         }
         let (mut inputs, outputs) = passed(chart, args, stmt.at.0, report);
@@ -156,7 +159,9 @@ fn split(program: &mut Unit, charts: &HashMap<String, Chart>, report: &mut Repor
         visit_mut::stmts(&mut inputs, &mut reads);
         let of_chart = |name: &String| charts.values().any(|c| c.name == *name);
         if reads.names.iter().any(|n| of_chart(n) || given.written.contains(n)) {
-            let what = "charts of called blocks evolve together, behind this; what it reads of them is of the scan before";
+            let what = say!(
+                "charts of called blocks evolve together, behind this; what it reads of them is of the scan before"
+            );
             report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, what));
         }
         visit_mut::stmts(&mut outputs.clone(), &mut given);
@@ -165,7 +170,7 @@ fn split(program: &mut Unit, charts: &HashMap<String, Chart>, report: &mut Repor
     }
     let idle = charts.values().filter(|c| !seen.contains(&c.name));
     idle.map(|c| {
-        let what = format!("the instance `{}` is never called; it is left out", c.name);
+        let what = say!("the instance `{}` is never called; it is left out", c.name);
         report.put(Problem::new(&codes::LEFT_OUT, program.name.at.0, what));
         c.name.clone()
     })
@@ -179,7 +184,7 @@ fn within(stmt: &Stmt, charts: &HashMap<String, Chart>, seen: &mut HashSet<Strin
             if let StmtKind::Call(path, _) = &stmt.kind
                 && let Some(chart) = charts.values().find(|c| *c.name == *path.text())
             {
-                let what = format!(
+                let what = say!(
                     "`{}` is called on a condition, so its chart stands still in some scans; it is carried over where it is called in every scan",
                     chart.name
                 );
@@ -213,7 +218,7 @@ fn passed(chart: &Chart, args: &[Arg], at: Span, report: &mut Report) -> (Vec<St
         };
         let Some(name) = meant else {
             let given = arg.name.as_ref().map_or("", |n| &*n.text);
-            let what = format!("the function block of `{}` has no input `{given}`", chart.name);
+            let what = say!("the function block of `{}` has no input `{given}`", chart.name);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, arg.value.at.0, what));
             continue;
         };

@@ -23,7 +23,7 @@ mod unit;
 mod write;
 
 use g7_model::codes;
-use g7_model::{Document, FileId, Problem};
+use g7_model::{Document, FileId, Problem, say};
 
 use crate::report::Report;
 use crate::st::Parser;
@@ -82,7 +82,7 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     let mut parser = Parser::new(text, &place, &mut report);
     let mut source = read::source(&mut parser);
     if source.units.is_empty() && source.globals.is_empty() {
-        let what = "no PROGRAM, FUNCTION_BLOCK, FUNCTION or CONFIGURATION stands in this file";
+        let what = say!("no PROGRAM, FUNCTION_BLOCK, FUNCTION or CONFIGURATION stands in this file");
         let end = text.len().min(1);
         report.say(&codes::NOT_JGRAFCHART, &(0..end), what);
         return (Document::default(), report.finish());

@@ -1,7 +1,7 @@
 //! Reads the units and configurations of a file.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt, StmtKind};
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt, StmtKind, say};
 
 use super::unit::{Association, Instance, Part, Source, Task, Transition, Unit, UnitKind};
 use crate::st::{Kind, Parser, elementary};
@@ -18,7 +18,7 @@ pub(super) fn source(p: &mut Parser) -> Source {
             item(p, &mut source);
         }
         if p.mark() == before {
-            p.expected("PROGRAM, FUNCTION_BLOCK, FUNCTION, CONFIGURATION or TYPE");
+            p.expected(say!("PROGRAM, FUNCTION_BLOCK, FUNCTION, CONFIGURATION or TYPE"));
             p.bump();
             p.skip_to(&["PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "CONFIGURATION", "TYPE", "VAR_GLOBAL"]);
         }
@@ -35,11 +35,11 @@ fn item(p: &mut Parser, source: &mut Source) {
         "RESOURCE" => resource(p, source),
         "NAMESPACE" => {
             p.bump();
-            p.name("the name of a namespace");
+            p.name(say!("the name of a namespace"));
         }
         "END_NAMESPACE" | "END_PROGRAM" | "END_FUNCTION_BLOCK" | "END_FUNCTION" => {
             if p.word() != "END_NAMESPACE" {
-                p.expected("the beginning of a unit");
+                p.expected(say!("the beginning of a unit"));
             }
             p.bump();
             p.eat(";");
@@ -78,16 +78,12 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
     {
         p.bump();
     }
-    let Some(name) = p.name("the name of the unit") else { return };
+    let Some(name) = p.name(say!("the name of the unit")) else { return };
     let result = if kind == UnitKind::Function && p.eat(":") { result_type(p) } else { None };
     for word in ["EXTENDS", "IMPLEMENTS"] {
         if p.at_word(word) {
             let at = p.here();
-            p.say(
-                &codes::NOT_CARRIED,
-                &at,
-                format!("`{word}`: units that build on others have no counterpart"),
-            );
+            p.say(&codes::NOT_CARRIED, &at, say!("`{word}`: units that build on others have no counterpart"));
             p.bump();
             p.bump();
         }
@@ -114,12 +110,12 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         }
         body(p, &mut unit);
         if p.mark() == before {
-            p.expected(&format!("`{closing}`"));
+            p.expected(say!("`{closing}`"));
             p.bump();
         }
     }
     if p.word() != closing && closes(&p.word()) && !p.at_end() {
-        p.expected(&format!("`{closing}`"));
+        p.expected(say!("`{closing}`"));
         p.skip_to(&[closing, "PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "CONFIGURATION"]);
         p.eat_word(closing);
     } else {
@@ -134,9 +130,9 @@ fn result_type(p: &mut Parser) -> Option<g7_model::Type> {
     let at = p.here();
     let word = p.word();
     let ty = elementary(&word).or_else(|| crate::st::bits(&word));
-    p.name("a type");
+    p.name(say!("a type"));
     if ty.is_none() {
-        p.say(&codes::NOT_CARRIED, &at, "the result of a function has an elementary type");
+        p.say(&codes::NOT_CARRIED, &at, say!("the result of a function has an elementary type"));
     }
     if p.eat("(") || p.eat("[") {
         p.bump();
@@ -204,7 +200,7 @@ const PARTS: [&str; 9] = [
 fn close(p: &mut Parser, word: &str) {
     while p.eat(";") {}
     if !p.at_word(word) {
-        p.expected(&format!("`{word}`"));
+        p.expected(say!("`{word}`"));
         p.skip_to(&PARTS);
     }
     p.eat_word(word);
@@ -213,7 +209,7 @@ fn close(p: &mut Parser, word: &str) {
 
 fn step(p: &mut Parser, start: u32, initial: bool) -> Option<Part> {
     p.bump();
-    let name = p.name("the name of a step")?;
+    let name = p.name(say!("the name of a step"))?;
     let mut associations = Vec::new();
     // The `:` may stand on the next line or be missing.
     p.eat(":");
@@ -221,7 +217,7 @@ fn step(p: &mut Parser, start: u32, initial: bool) -> Option<Part> {
         let before = p.mark();
         associations.extend(association(p));
         if !p.eat(";") && !p.at_word("END_STEP") {
-            p.expected("`;`");
+            p.expected(say!("`;`"));
             p.skip_to(&PARTS);
             break;
         }
@@ -253,7 +249,7 @@ fn association(p: &mut Parser) -> Option<Association> {
     }
     if qualifier.timed() && time.is_none() {
         let at = p.range(start as usize, p.behind());
-        p.say(&codes::BAD_TEXT, &at, format!("the qualifier {} needs a time", qualifier.name()));
+        p.say(&codes::BAD_TEXT, &at, say!("the qualifier {} needs a time", qualifier));
         qualifier = Qualifier::N;
     }
     Some(Association { target, qualifier, time, at: p.since(start) })
@@ -264,9 +260,9 @@ fn target(p: &mut Parser) -> Option<Expr> {
     if p.token().kind == Kind::Direct {
         return Some(p.expr());
     }
-    let mut names = vec![p.name("the name of an action")?];
+    let mut names = vec![p.name(say!("the name of an action"))?];
     while p.eat(".") {
-        names.push(p.name("the name of an action")?);
+        names.push(p.name(say!("the name of an action"))?);
     }
     Some(Expr { kind: ExprKind::Path(Path { names }), at: p.since(start).into() })
 }
@@ -275,7 +271,7 @@ fn qualifier_of(p: &mut Parser) -> Qualifier {
     let word = p.word();
     let found = Qualifier::named(&word);
     if found.is_none() {
-        p.expected("a qualifier");
+        p.expected(say!("a qualifier"));
     }
     p.bump();
     found.unwrap_or(Qualifier::N)
@@ -297,7 +293,7 @@ fn indicator(p: &mut Parser) {
         &codes::LEFT_OUT,
         "indicator",
         &at,
-        "an indicator variable is not kept; it is for the reader",
+        say!("an indicator variable is not kept; it is for the reader"),
     );
     p.expr();
 }
@@ -308,7 +304,7 @@ fn transition(p: &mut Parser, start: u32) -> Option<Part> {
     // A transition may be called FROM; then a second FROM follows.
     let called_from =
         p.at_word("FROM") && (p.ahead_word(1, "FROM") || p.ahead_is(1, "(") && p.ahead_word(2, "PRIORITY"));
-    let label = if named || called_from { p.name("the name of a transition") } else { None };
+    let label = if named || called_from { p.name(say!("the name of a transition")) } else { None };
     let priority = if p.at("(") { priority(p) } else { None };
     p.expect_word("FROM");
     let from = steps(p);
@@ -317,7 +313,7 @@ fn transition(p: &mut Parser, start: u32) -> Option<Part> {
     let receptivity = if p.eat(":=") {
         let e = p.expr();
         if !p.eat(";") {
-            p.expected("`;`");
+            p.expected(say!("`;`"));
         }
         e
     } else if p.eat(":") {
@@ -325,12 +321,12 @@ fn transition(p: &mut Parser, start: u32) -> Option<Part> {
             p.il_expression()
         } else {
             let at = p.here();
-            p.say(&codes::NOT_CARRIED, &at, "a receptivity behind `:` is written in Instruction List");
+            p.say(&codes::NOT_CARRIED, &at, say!("a receptivity behind `:` is written in Instruction List"));
             p.skip_to(&PARTS);
             p.bad(start)
         }
     } else {
-        p.expected("`:=` and the receptivity");
+        p.expected(say!("`:=` and the receptivity"));
         p.skip_to(&PARTS);
         p.bad(start)
     };
@@ -352,7 +348,7 @@ fn priority(p: &mut Parser) -> Option<u32> {
         _ => None,
     };
     if number.is_none() {
-        p.say(&codes::BAD_VALUE, &at, "a priority is a whole number");
+        p.say(&codes::BAD_VALUE, &at, say!("a priority is a whole number"));
     }
     number
 }
@@ -360,10 +356,10 @@ fn priority(p: &mut Parser) -> Option<u32> {
 /// `A` or `(A, B)`.
 fn steps(p: &mut Parser) -> Vec<Name> {
     if !p.eat("(") {
-        return p.name("the name of a step").into_iter().collect();
+        return p.name(say!("the name of a step")).into_iter().collect();
     }
     let mut names = Vec::new();
-    while let Some(name) = p.name("the name of a step") {
+    while let Some(name) = p.name(say!("the name of a step")) {
         names.push(name);
         if !p.eat(",") {
             break;
@@ -375,7 +371,7 @@ fn steps(p: &mut Parser) -> Vec<Name> {
 
 fn action(p: &mut Parser, start: u32) -> Option<Part> {
     p.bump();
-    let name = p.name("the name of an action")?;
+    let name = p.name(say!("the name of an action"))?;
     p.eat(":");
     let mut body = statements(p);
     if is_nothing(&body) {
@@ -396,11 +392,11 @@ fn is_nothing(body: &[Stmt]) -> bool {
 
 fn configuration(p: &mut Parser, source: &mut Source) {
     p.bump();
-    p.name("the name of the configuration");
+    p.name(say!("the name of the configuration"));
     while !p.at_end() && !p.at_word("END_CONFIGURATION") {
         let before = p.mark();
         if !inside(p, source) || p.mark() == before {
-            p.expected("a resource, a task, a program or `END_CONFIGURATION`");
+            p.expected(say!("a resource, a task, a program or `END_CONFIGURATION`"));
             p.skip_to(&["END_CONFIGURATION"]);
         }
     }
@@ -424,14 +420,14 @@ fn inside(p: &mut Parser, source: &mut Source) -> bool {
 
 fn resource(p: &mut Parser, source: &mut Source) {
     p.bump();
-    p.name("the name of the resource");
+    p.name(say!("the name of the resource"));
     if p.eat_word("ON") {
-        p.name("the type of the resource");
+        p.name(say!("the type of the resource"));
     }
     while !p.at_end() && !p.at_word("END_RESOURCE") {
         let before = p.mark();
         if !inside(p, source) || p.mark() == before {
-            p.expected("a task, a program or `END_RESOURCE`");
+            p.expected(say!("a task, a program or `END_RESOURCE`"));
             p.skip_to(&["END_RESOURCE", "END_CONFIGURATION"]);
             break;
         }
@@ -443,7 +439,7 @@ fn resource(p: &mut Parser, source: &mut Source) {
 /// `TASK fast(INTERVAL := T#10ms, PRIORITY := 1);`.
 fn task(p: &mut Parser, source: &mut Source) {
     p.bump();
-    let Some(name) = p.name("the name of the task") else { return };
+    let Some(name) = p.name(say!("the name of the task")) else { return };
     let mut interval = None;
     p.expect("(");
     while !p.at(")") && !p.at_end() {
@@ -454,9 +450,11 @@ fn task(p: &mut Parser, source: &mut Source) {
         let value = p.expr();
         match (word.as_str(), value.kind) {
             ("INTERVAL", ExprKind::Literal(Literal::Time(t))) if t > Nanos::ZERO => interval = Some(t),
-            ("INTERVAL", _) => p.say(&codes::NOT_CARRIED, &at, "the interval of a task is written as a time"),
+            ("INTERVAL", _) => {
+                p.say(&codes::NOT_CARRIED, &at, say!("the interval of a task is written as a time"))
+            }
             ("SINGLE", _) => {
-                p.say(&codes::NOT_CARRIED, &at, "a task that an event starts has no counterpart")
+                p.say(&codes::NOT_CARRIED, &at, say!("a task that an event starts has no counterpart"))
             }
             _ => {}
         }
@@ -475,16 +473,16 @@ fn instance(p: &mut Parser, source: &mut Source) {
     if matches!(p.word().as_str(), "RETAIN" | "NON_RETAIN") && p.ahead(1).kind == Kind::Word {
         p.bump();
     }
-    p.name("the name of the program");
-    let task = if p.eat_word("WITH") { p.name("the name of a task") } else { None };
+    p.name(say!("the name of the program"));
+    let task = if p.eat_word("WITH") { p.name(say!("the name of a task")) } else { None };
     p.expect(":");
-    let Some(unit) = p.name("the type of the program") else { return };
+    let Some(unit) = p.name(say!("the type of the program")) else { return };
     let mut links = Vec::new();
     if p.eat("(") {
         while !p.at(")") && !p.at_end() {
-            let Some(name) = p.name("a variable of the program") else { break };
+            let Some(name) = p.name(say!("a variable of the program")) else { break };
             if !p.eat(":=") && !p.eat("=>") {
-                p.expected("`:=` or `=>`");
+                p.expected(say!("`:=` or `=>`"));
                 break;
             }
             links.push((name, p.expr()));

@@ -1,7 +1,7 @@
 //! Declarations of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Place, Problem, Type, VarDecl, VarKind};
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Place, Problem, Type, VarDecl, VarKind, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -54,7 +54,7 @@ impl Parser<'_> {
             "VAR_GLOBAL" => Section::Global,
             "VAR_STAT" | "VAR_INST" => Section::Local,
             "VAR_ACCESS" | "VAR_CONFIG" => {
-                let what = format!("a section `{}` is left out", self.word());
+                let what = say!("a section `{}` is left out", self.word());
                 self.say(&codes::LEFT_OUT, &at, what);
                 self.skip_to(&["END_VAR"]);
                 self.bump();
@@ -112,7 +112,7 @@ impl Parser<'_> {
             if self.at_word("AT") && self.ahead(1).kind == Kind::Direct {
                 break;
             }
-            match self.name("the name of a variable") {
+            match self.name(say!("the name of a variable")) {
                 Some(name) => names.push((name, None)),
                 None => return false,
             }
@@ -139,7 +139,7 @@ impl Parser<'_> {
         self.arguments();
         let ended = self.eat(";");
         if !ended {
-            self.expected("`;`");
+            self.expected(say!("`;`"));
         }
         let at = self.since(start).into();
         let comment = self.comment_behind();
@@ -172,8 +172,7 @@ impl Parser<'_> {
         let word = self.word();
         let first = names.first().map_or("", |(n, _)| &*n.text);
         let sign = if word == "R_EDGE" { "↑" } else { "↓" };
-        let what =
-            format!("`{first}` is the level here, not its edge; write `{sign}{first}` where it is read");
+        let what = say!("`{first}` is the level here, not its edge; write `{sign}{first}` where it is read");
         self.say(&codes::NOT_CARRIED, &at, what);
         self.bump();
     }
@@ -182,7 +181,7 @@ impl Parser<'_> {
     fn arguments(&mut self) {
         if self.at("(") {
             let at = self.here();
-            self.say(&codes::NOT_CARRIED, &at, "arguments of a declaration have no counterpart");
+            self.say(&codes::NOT_CARRIED, &at, say!("arguments of a declaration have no counterpart"));
             self.args();
         }
     }
@@ -234,7 +233,7 @@ impl Parser<'_> {
             return Initial::Fields(fields);
         }
         self.bump();
-        while let Some(name) = self.name("the name of an element") {
+        while let Some(name) = self.name(say!("the name of an element")) {
             self.expect(":=");
             fields.push((name, self.initial()));
             if !self.eat(",") {
@@ -309,7 +308,7 @@ impl Maker<'_> {
             Some(Initial::One(e)) if e.kind != ExprKind::Bad => value = Some(e.clone()),
             Some(Initial::One(_)) | None => {}
             Some(_) => {
-                let what = format!(
+                let what = say!(
                     "the initial values of `{}` do not fit its type, or cannot be carried over",
                     name.text
                 );

@@ -1,7 +1,7 @@
 //! Expressions of Structured Text.
 
 use g7_model::codes;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -59,7 +59,7 @@ impl Parser<'_> {
             return Tree { expr: Expr { kind, at: at.into() }, height };
         }
         let here = self.here();
-        self.say(&codes::TOO_DEEP, &here, format!("an expression more than {MOST_HIGH} operators deep"));
+        self.say(&codes::TOO_DEEP, &here, say!("an expression more than {MOST_HIGH} operators deep"));
         Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 }
     }
 
@@ -101,7 +101,7 @@ impl Parser<'_> {
                 return self.word_operand();
             }
             _ => {
-                self.expected("an expression");
+                self.expected(say!("an expression"));
                 self.bad(token.start)
             }
         };
@@ -131,12 +131,12 @@ impl Parser<'_> {
             }
             _ if self.ahead_is(1, "(") => return self.call(),
             word if BinaryOp::of_word(word).is_some() => {
-                self.expected("an expression");
+                self.expected(say!("an expression"));
                 return Tree { expr: self.bad(token.start), height: 1 };
             }
             "THEN" | "DO" | "OF" | "TO" | "BY" | "END_IF" | "END_TRANSITION" | "END_ACTION" | "END_STEP"
             | "END_VAR" | "ELSE" | "ELSIF" | "UNTIL" => {
-                self.expected("an expression");
+                self.expected(say!("an expression"));
                 return Tree { expr: self.bad(token.start), height: 1 };
             }
             _ => {}
@@ -150,7 +150,7 @@ impl Parser<'_> {
         let start = self.token().start;
         let mut names: Vec<Name> = Vec::new();
         let mut fits = true;
-        while let Some(mut name) = self.name("a name") {
+        while let Some(mut name) = self.name(say!("a name")) {
             while self.at("[") {
                 match self.index() {
                     Some(index) => {
@@ -163,7 +163,7 @@ impl Parser<'_> {
             names.push(name);
             if self.at("^") {
                 let at = self.here();
-                self.say(&codes::NOT_CARRIED, &at, "there are no pointers");
+                self.say(&codes::NOT_CARRIED, &at, say!("there are no pointers"));
                 self.bump();
                 fits = false;
             }
@@ -176,7 +176,7 @@ impl Parser<'_> {
                 self.say(
                     &codes::NOT_CARRIED,
                     &at,
-                    "a bit of a word cannot be named; there are no bit strings",
+                    say!("a bit of a word cannot be named; there are no bit strings"),
                 );
                 self.bump();
                 fits = false;
@@ -225,7 +225,7 @@ impl Parser<'_> {
             self.say(
                 &codes::NOT_CARRIED,
                 &at,
-                "an index that is no constant; arrays are carried as single variables",
+                say!("an index that is no constant; arrays are carried as single variables"),
             );
             return None;
         }
@@ -236,7 +236,7 @@ impl Parser<'_> {
     fn call(&mut self) -> Tree {
         let start = self.token().start;
         let upper = self.word();
-        let Some(name) = self.name("a function") else {
+        let Some(name) = self.name(say!("a function")) else {
             return Tree { expr: self.bad(start), height: 1 };
         };
         let args = self.args();
@@ -283,7 +283,7 @@ impl Parser<'_> {
             self.say(
                 &codes::NOT_CARRIED,
                 &at,
-                "an output that is negated on its way; assign it behind the call",
+                say!("an output that is negated on its way; assign it behind the call"),
             );
             self.bump();
         }
@@ -293,7 +293,7 @@ impl Parser<'_> {
             let tree = self.tree(1);
             return Some((Arg { name: None, output: false, value: tree.expr }, tree.height));
         }
-        let name = self.name("an input")?;
+        let name = self.name(say!("an input"))?;
         self.bump();
         // An output that is not connected: `Q => ,`.
         if output && (self.at(",") || self.at(")")) {

@@ -1,7 +1,7 @@
 //! Reads constants in the text: type words in any case, and forms without a counterpart.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Path};
+use g7_model::{Expr, ExprKind, Literal, Name, Path, Said, say};
 
 use super::lex::{Kind, Token};
 use super::parse::Parser;
@@ -34,13 +34,13 @@ impl Parser<'_> {
                 self.read(token, time, text)
             }
             "DATE" | "D" | "DT" | "DATE_AND_TIME" | "TOD" | "TIME_OF_DAY" | "LDT" | "LTOD" | "LDATE" => {
-                self.refuse(token, &format!("`{text}`: there are no dates and times of day"))
+                self.refuse(token, say!("`{text}`: there are no dates and times of day"))
             }
             "STRING" | "WSTRING" | "CHAR" | "WCHAR" => self.read(token, string(value), text),
             "BOOL" => match value.to_ascii_uppercase().as_str() {
                 "TRUE" | "1" | "2#1" | "16#1" => self.boolean(token, true),
                 "FALSE" | "0" | "2#0" | "16#0" => self.boolean(token, false),
-                _ => self.refuse(token, &format!("`{text}` is no BOOL")),
+                _ => self.refuse(token, say!("`{text}` is no BOOL")),
             },
             _ => match super::types::elementary(&upper).or_else(|| bits(&upper)) {
                 Some(ty) if ty.is_real() => {
@@ -62,21 +62,21 @@ impl Parser<'_> {
         Expr { kind, at: self.span_of(token).into() }
     }
 
-    fn refuse(&mut self, token: Token, what: &str) -> Expr {
+    fn refuse(&mut self, token: Token, what: Said) -> Expr {
         let at = self.range(token.start as usize, token.end as usize);
         self.report.say(&codes::NOT_CARRIED, &at, what);
         Expr { kind: ExprKind::Bad, at: self.span_of(token).into() }
     }
 
     /// The constant that was read, or a problem at its place.
-    fn read(&mut self, token: Token, constant: Result<Literal, String>, source: &str) -> Expr {
+    fn read(&mut self, token: Token, constant: Result<Literal, Said>, source: &str) -> Expr {
         let at = self.span_of(token).into();
         match constant {
             Ok(literal) => Expr { kind: ExprKind::Literal(literal), at },
             Err(what) => {
                 let place = self.range(token.start as usize, token.end as usize);
                 let short: String = source.chars().take(40).collect();
-                self.report.say(&codes::BAD_VALUE, &place, format!("`{short}`: {what}"));
+                self.report.say(&codes::BAD_VALUE, &place, say!("`{short}`: {what}"));
                 Expr { kind: ExprKind::Bad, at }
             }
         }
@@ -84,7 +84,7 @@ impl Parser<'_> {
 }
 
 /// A number without a type: real if it has a point or an exponent, otherwise whole.
-fn number(text: &str) -> Result<Literal, String> {
+fn number(text: &str) -> Result<Literal, Said> {
     if text.contains('#') || !text.contains(['.', 'e', 'E']) {
         constant::integer(text).map(|value| Literal::Int(value, None))
     } else {
@@ -93,7 +93,7 @@ fn number(text: &str) -> Result<Literal, String> {
 }
 
 /// A string with its quotes.
-fn string(text: &str) -> Result<Literal, String> {
+fn string(text: &str) -> Result<Literal, Said> {
     match constant::unquote_st(text) {
         (_, Some(wrong)) => Err(wrong),
         (text, None) => Ok(Literal::Str(text.into())),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use g7_model::codes::{self, Code};
-use g7_model::{Expr, ExprKind, Name, Span};
+use g7_model::{Expr, ExprKind, Name, Said, Span, say};
 
 use super::lex::{Kind, Token, tokens};
 use crate::report::Report;
@@ -147,7 +147,7 @@ impl<'a> Parser<'a> {
 
     // Problems
 
-    pub(crate) fn say(&mut self, code: &'static Code, at: &Range<usize>, what: impl Into<String>) {
+    pub(crate) fn say(&mut self, code: &'static Code, at: &Range<usize>, what: Said) {
         if self.told != Some(self.pos) {
             self.told = Some(self.pos);
             self.report.say(code, at, what);
@@ -155,25 +155,25 @@ impl<'a> Parser<'a> {
     }
 
     /// A description of the current token.
-    pub(crate) fn found(&self) -> String {
+    pub(crate) fn found(&self) -> Said {
         let token = self.token();
         if token.kind == Kind::End {
-            return "the end of the text".into();
+            return say!("the end of the text");
         }
         let short: String = self.slice(token).chars().take(24).collect();
-        format!("`{short}`")
+        say!("`{short}`")
     }
 
-    pub(crate) fn expected(&mut self, what: &str) {
+    pub(crate) fn expected(&mut self, what: Said) {
         let at = self.here();
-        let words = format!("expected {what}, found {}", self.found());
+        let words = say!("expected {what}, found {}", self.found());
         self.say(&codes::BAD_TEXT, &at, words);
     }
 
     pub(crate) fn expect(&mut self, sign: &str) -> bool {
         let here = self.eat(sign);
         if !here {
-            self.expected(&format!("`{sign}`"));
+            self.expected(say!("`{sign}`"));
         }
         here
     }
@@ -181,14 +181,14 @@ impl<'a> Parser<'a> {
     pub(crate) fn expect_word(&mut self, word: &str) -> bool {
         let here = self.eat_word(word);
         if !here {
-            self.expected(&format!("`{word}`"));
+            self.expected(say!("`{word}`"));
         }
         here
     }
 
     pub(crate) fn expect_end(&mut self) {
         if !self.at_end() {
-            self.expected("nothing more");
+            self.expected(say!("nothing more"));
         }
     }
 
@@ -200,11 +200,7 @@ impl<'a> Parser<'a> {
             return true;
         }
         let at = self.here();
-        self.say(
-            &codes::TOO_DEEP,
-            &at,
-            format!("brackets or statements nested more than {MOST_NESTED} deep"),
-        );
+        self.say(&codes::TOO_DEEP, &at, say!("brackets or statements nested more than {MOST_NESTED} deep"));
         self.pos = self.tokens.len().saturating_sub(1);
         false
     }
@@ -216,7 +212,7 @@ impl<'a> Parser<'a> {
     // Names
 
     /// Reads a name as written; reports a problem and returns None if there is none.
-    pub(crate) fn name(&mut self, what: &str) -> Option<Name> {
+    pub(crate) fn name(&mut self, what: Said) -> Option<Name> {
         let token = self.token();
         if token.kind != Kind::Word {
             self.expected(what);

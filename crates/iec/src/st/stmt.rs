@@ -1,7 +1,7 @@
 //! Statements of Structured Text.
 
 use g7_model::codes;
-use g7_model::{Arg, CaseArm, Expr, ExprKind, Literal, Path, Stmt, StmtKind};
+use g7_model::{Arg, CaseArm, Expr, ExprKind, Literal, Path, Stmt, StmtKind, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -19,7 +19,7 @@ impl Parser<'_> {
             let before = self.mark();
             self.statement(&mut list);
             if self.mark() == before {
-                self.expected("a statement");
+                self.expected(say!("a statement"));
                 self.bump();
                 self.recover();
             }
@@ -42,7 +42,7 @@ impl Parser<'_> {
     /// Reads `;`, which is required if another statement follows.
     fn end_statement(&mut self) {
         if !self.eat(";") && !self.at_end() && !self.at_closing() && !self.closed() {
-            self.expected("`;`");
+            self.expected(say!("`;`"));
             self.recover();
         }
     }
@@ -87,7 +87,7 @@ impl Parser<'_> {
             }
             "CONTINUE" | "JMP" | "GOTO" => {
                 let at = self.here();
-                let what = format!("`{}` has no counterpart", self.word());
+                let what = say!("`{}` has no counterpart", self.word());
                 self.say(&codes::NOT_CARRIED, &at, what);
                 self.recover();
                 None
@@ -174,7 +174,7 @@ impl Parser<'_> {
             let before = self.mark();
             self.statement(&mut list);
             if self.mark() == before {
-                self.expected("a statement");
+                self.expected(say!("a statement"));
                 self.bump();
                 self.recover();
             }
@@ -218,7 +218,7 @@ impl Parser<'_> {
             ExprKind::Path(path) if path.names.len() == 1 => path.names.into_iter().next(),
             ExprKind::Bad => None,
             _ => {
-                self.report.say(&codes::NOT_CARRIED, &at, "only a plain variable can count a loop");
+                self.report.say(&codes::NOT_CARRIED, &at, say!("only a plain variable can count a loop"));
                 None
             }
         };
@@ -229,7 +229,7 @@ impl Parser<'_> {
     fn simple(&mut self, list: &mut Vec<Stmt>) {
         let start = self.token().start;
         if self.token().kind == Kind::Word && self.ahead_is(1, "(") {
-            let name = self.name("a function block");
+            let name = self.name(say!("a function block"));
             let args = self.args();
             self.end_statement();
             let Some(name) = name else { return };
@@ -265,9 +265,13 @@ impl Parser<'_> {
         if !self.at(":=") {
             if self.at(";") {
                 let at = self.since(start);
-                self.report.put(g7_model::Problem::new(&codes::BAD_TEXT, at, "a name alone is no statement"));
+                self.report.put(g7_model::Problem::new(
+                    &codes::BAD_TEXT,
+                    at,
+                    say!("a name alone is no statement"),
+                ));
             } else {
-                self.expected("`:=`");
+                self.expected(say!("`:=`"));
             }
             self.recover();
             return self.end_statement();

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Expr, Name, Type};
+use g7_model::{Expr, Name, Type, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -91,13 +91,13 @@ impl Parser<'_> {
         }
         while !self.at_end() && !self.at_word("END_TYPE") {
             let before = self.mark();
-            let Some(name) = self.name("the name of a type") else {
+            let Some(name) = self.name(say!("the name of a type")) else {
                 self.skip_to(&["END_TYPE"]);
                 break;
             };
             if self.eat_word("EXTENDS") {
                 let at = self.here();
-                self.say(&codes::NOT_CARRIED, &at, "a type that extends another one");
+                self.say(&codes::NOT_CARRIED, &at, say!("a type that extends another one"));
                 self.bump();
             }
             self.expect(":");
@@ -109,7 +109,8 @@ impl Parser<'_> {
                     Shape::Enum(names, _) => Shape::Enum(names, Some(init)),
                     other => {
                         let at = init.at.0;
-                        let what = "initial values of a structure's or array's type are not carried over";
+                        let what =
+                            say!("initial values of a structure's or array's type are not carried over");
                         self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
                         other
                     }
@@ -142,7 +143,7 @@ impl Parser<'_> {
         self.leave();
         if shape.size() > MOST_ELEMENTS {
             let at = self.range(start as usize, self.behind());
-            let what = format!("an array or structure of more than {MOST_ELEMENTS} elements");
+            let what = say!("an array or structure of more than {MOST_ELEMENTS} elements");
             self.say(&codes::NOT_CARRIED, &at, what);
             return Shape::Simple(Type::Bool, None);
         }
@@ -156,13 +157,13 @@ impl Parser<'_> {
             "ARRAY" => return self.array(types),
             "STRUCT" => return self.structure(types),
             "POINTER" | "REF_TO" | "REFERENCE" => {
-                self.say(&codes::NOT_CARRIED, &at, "there are no pointers");
+                self.say(&codes::NOT_CARRIED, &at, say!("there are no pointers"));
                 self.bump();
                 self.eat_word("TO");
                 return self.shape(types);
             }
             "DATE" | "DT" | "DATE_AND_TIME" | "TOD" | "TIME_OF_DAY" | "LDT" | "LTOD" | "LDATE" => {
-                self.say(&codes::NOT_CARRIED, &at, "there are no dates and times of day");
+                self.say(&codes::NOT_CARRIED, &at, say!("there are no dates and times of day"));
                 self.bump();
                 return Shape::Simple(Type::Time, None);
             }
@@ -171,10 +172,10 @@ impl Parser<'_> {
         if self.at("(") {
             return self.enumeration();
         }
-        let Some(name) = self.name("a type") else { return Shape::Simple(Type::Bool, None) };
+        let Some(name) = self.name(say!("a type")) else { return Shape::Simple(Type::Bool, None) };
         if let Some(ty) = bits(&upper) {
-            let what = format!("`{upper}` is carried over as {ty}; there are no bit strings");
-            self.report.element(&codes::DIFFERENT, &upper, &at, &what);
+            let what = say!("`{upper}` is carried over as {ty}; there are no bit strings");
+            self.report.element(&codes::DIFFERENT, &upper, &at, what);
             self.subrange(&at);
             return Shape::Simple(ty, None);
         }
@@ -194,7 +195,12 @@ impl Parser<'_> {
         if !self.at("(") || self.ahead_is(1, ")") {
             return;
         }
-        self.report.element(&codes::LEFT_OUT, "subrange", at, "the limits of a subrange are not checked");
+        self.report.element(
+            &codes::LEFT_OUT,
+            "subrange",
+            at,
+            say!("the limits of a subrange are not checked"),
+        );
         let mut depth = 0usize;
         while !self.at_end() {
             if self.at("(") {
@@ -221,7 +227,7 @@ impl Parser<'_> {
         let token = self.token();
         let length = self.slice(token).parse::<u16>().ok().filter(|_| token.kind == Kind::Number);
         if length.is_none() {
-            self.expected("the length of a string");
+            self.expected(say!("the length of a string"));
         }
         self.bump();
         self.expect(close);
@@ -231,10 +237,14 @@ impl Parser<'_> {
     fn enumeration(&mut self) -> Shape {
         self.bump();
         let mut names = Vec::new();
-        while let Some(name) = self.name("a value of the enumeration") {
+        while let Some(name) = self.name(say!("a value of the enumeration")) {
             if self.at(":=") {
                 let at = self.here();
-                self.say(&codes::NOT_CARRIED, &at, "numbers of an enumeration's values are not carried over");
+                self.say(
+                    &codes::NOT_CARRIED,
+                    &at,
+                    say!("numbers of an enumeration's values are not carried over"),
+                );
                 self.bump();
                 self.expr();
             }
@@ -276,7 +286,7 @@ impl Parser<'_> {
             }
             None => {
                 let at = self.here();
-                self.say(&codes::NOT_CARRIED, &at, "the limits of an array are written as numbers");
+                self.say(&codes::NOT_CARRIED, &at, say!("the limits of an array are written as numbers"));
                 self.skip_to(&["OF"]);
                 None
             }
@@ -288,7 +298,7 @@ impl Parser<'_> {
         let mut fields = Vec::new();
         while !self.at_end() && !self.at_word("END_STRUCT") {
             let mut names = Vec::new();
-            while let Some(name) = self.name("the name of an element") {
+            while let Some(name) = self.name(say!("the name of an element")) {
                 names.push(name);
                 if !self.eat(",") {
                     break;

@@ -7,7 +7,7 @@ use std::collections::HashMap;
 
 use g7_model::{
     Action, ActionKind, Block, Expr, FbKind, Name, Nanos, Order, Qualifier, Span, Step, StepKind, Stmt,
-    Target, Type, Work,
+    Target, Type, Work, say,
 };
 
 use super::bodies::At;
@@ -90,7 +90,8 @@ impl<'d> Lower<'d> {
                 Some(body_of(Qualifier::N, vec![nodes::when(is, list, Vec::new(), span)], span))
             }
             ActionKind::OnEvent { event, work } => {
-                let what = "an action on event becomes a body of its step that runs behind the evolution";
+                let what =
+                    say!("an action on event becomes a body of its step that runs behind the evolution");
                 self.differs(span, what);
                 let active = self.active(key, span, at, 0);
                 let first = self.initial(key);
@@ -102,16 +103,13 @@ impl<'d> Lower<'d> {
             }
             ActionKind::Order(order) => {
                 let what = match order {
-                    Order::Force(..) => "a forcing order",
-                    Order::Enable(_) => "an order that enables a chart",
-                    Order::Mask(_) => "an order that masks",
-                    Order::Call(_) => "a call of a task",
-                    Order::Enclose(_) => "an enclosed chart",
+                    Order::Force(..) => say!("a forcing order"),
+                    Order::Enable(_) => say!("an order that enables a chart"),
+                    Order::Mask(_) => say!("an order that masks"),
+                    Order::Call(_) => say!("a call of a task"),
+                    Order::Enclose(_) => say!("an enclosed chart"),
                 };
-                self.lost(
-                    span,
-                    &format!("{what}, which IEC 61131-3 does not have: an order to another chart"),
-                );
+                self.lost(span, say!("{what}, which IEC 61131-3 does not have: an order to another chart"));
                 None
             }
             ActionKind::Comment(text) => Some(ActionKind::Comment(text.clone())),
@@ -163,7 +161,10 @@ impl<'d> Lower<'d> {
                 }
                 (Qualifier::P, false) => body_of(Qualifier::P1, list, span),
                 (_, false) => {
-                    self.differs(span, "the body runs once more when its action ends, as in IEC 61131-3");
+                    self.differs(
+                        span,
+                        say!("the body runs once more when its action ends, as in IEC 61131-3"),
+                    );
                     plain(list)
                 }
             };
@@ -174,7 +175,7 @@ impl<'d> Lower<'d> {
         }
         let mut calls = Vec::new();
         let Some(is) = self.part(drive, title, &mut calls, span, at) else {
-            self.lost(span, "the condition of a body that is stored has no form there");
+            self.lost(span, say!("the condition of a body that is stored has no form there"));
             return plain(list);
         };
         let mut whole = calls;
@@ -259,11 +260,11 @@ impl<'d> Lower<'d> {
         }
         let (qualifier, time) = (drive.qualifier, drive.time.map(|t| self.time(t, at)));
         let Target::Path(path) = target else {
-            self.lost(span, "what a step drives has a name; declare a variable at this address");
+            self.lost(span, say!("what a step drives has a name; declare a variable at this address"));
             return None;
         };
         let Some(Ref::Action(home, action)) = self.scopes.refer(at.chart, &path.names) else {
-            self.lost(span, "what a step drives is a variable or a named action");
+            self.lost(span, say!("what a step drives is a variable or a named action"));
             return None;
         };
         let name = self.names.part(home, &action.name.text).unwrap_or(&action.name.text).to_string();
@@ -278,7 +279,7 @@ impl<'d> Lower<'d> {
             return Some(self.body_with(drive, list, span, at, title));
         }
         if drive.condition.is_some() {
-            self.lost(span, "the condition of an action that is used more than once has no form there");
+            self.lost(span, say!("the condition of an action that is used more than once has no form there"));
         }
         let target = Target::Path(nodes::path(&[&name], span));
         Some(ActionKind::Qualified { qualifier, time, target, condition: None })
@@ -300,7 +301,7 @@ impl<'d> Lower<'d> {
                 return Some(body_of(Qualifier::N, list, span));
             }
             if drive.condition.is_some() {
-                let what = "the condition of an action beside others of its variable has no form there";
+                let what = say!("the condition of an action beside others of its variable has no form there");
                 self.lost(span, what);
             }
         }
@@ -366,13 +367,12 @@ impl<'d> Lower<'d> {
             (Some(name), _) => (name, Qualifier::P0),
             (None, Some(name)) => (name, Qualifier::P1),
             (None, None) => {
-                self.lost(span, "an action on clearing, of a transition that has no step for itself");
+                self.lost(span, say!("an action on clearing, of a transition that has no step for itself"));
                 return None;
             }
         };
-        let what =
-            format!("an action on clearing becomes one of step `{}`, with {}", name.text, qualifier.name());
-        self.differs(span, &what);
+        let what = say!("an action on clearing becomes one of step `{}`, with {}", name.text, qualifier);
+        self.differs(span, what);
         let key = self.scopes.step_in(chart, &name.text)?;
         let at = At { chart: Some(chart), program: self.program_of(chart), ..At::default() };
         let title = format!("{}_clearing", self.names.step(key));

@@ -3,8 +3,8 @@
 use g7_model::codes;
 use g7_model::{
     Action, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item, Layout,
-    Literal, Local, Name, NamedAction, Param, Placed, Problem, Profile, ProfileName, Qualifier, Section,
-    Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl, VarKind,
+    Literal, Local, Name, NamedAction, Param, Placed, Problem, Profile, ProfileName, Qualifier, Said,
+    Section, Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl, VarKind, say,
 };
 
 use super::bodies::At;
@@ -31,10 +31,12 @@ impl<'d> Lower<'d> {
                 Item::Pre(body, at) => self.processing(None, body, at.0, &mut pre),
                 Item::Post(body, at) => self.processing(None, body, at.0, &mut post),
                 Item::Action(_) | Item::Section(_) | Item::Layout(_) | Item::Chart(_) => {}
-                Item::Target(_, at) => self.left_out(at.0, "the PLC whose limits are checked is left out"),
-                Item::Plant(p) => self.left_out(p.at.0, "a plant is left out"),
-                Item::Test(t) => self.left_out(t.at.0, "a test is left out"),
-                Item::Prove(p) => self.left_out(p.at.0, "a property is left out"),
+                Item::Target(_, at) => {
+                    self.left_out(at.0, say!("the PLC whose limits are checked is left out"))
+                }
+                Item::Plant(p) => self.left_out(p.at.0, say!("a plant is left out")),
+                Item::Test(t) => self.left_out(t.at.0, say!("a test is left out")),
+                Item::Prove(p) => self.left_out(p.at.0, say!("a property is left out")),
             }
         }
         let mut charts: Vec<(usize, Vec<ChartItem>)> = Vec::new();
@@ -42,7 +44,7 @@ impl<'d> Lower<'d> {
             if self.program_of(number).is_none() {
                 self.lost(
                     chart.name.at.0,
-                    "a task, or an expansion that no macro-step has: there is no counterpart",
+                    say!("a task, or an expansion that no macro-step has: there is no counterpart"),
                 );
                 continue;
             }
@@ -66,7 +68,10 @@ impl<'d> Lower<'d> {
         let mut body = std::mem::take(&mut self.channels);
         body.append(&mut self.looking);
         if returns(&pre) && !(self.copies.is_empty() && self.sections.is_empty()) {
-            self.lost(at, "RETURN in a body before the charts: what is computed behind it would not run");
+            self.lost(
+                at,
+                say!("RETURN in a body before the charts: what is computed behind it would not run"),
+            );
         }
         body.append(&mut pre);
         body.append(&mut self.sections);
@@ -99,7 +104,7 @@ impl<'d> Lower<'d> {
         Document { items: all, notes: Vec::new() }
     }
 
-    fn left_out(&mut self, at: Span, what: &str) {
+    fn left_out(&mut self, at: Span, what: Said) {
         self.problems.push(Problem::new(&codes::LEFT_OUT, at, what));
     }
 
@@ -118,11 +123,11 @@ impl<'d> Lower<'d> {
         }
         made.init = decl.init.as_ref().map(|e| self.constant(e, chart));
         if let Some(other) = decl.address.as_ref().filter(|a| !is_address(&a.text)) {
-            let what = format!(
+            let what = say!(
                 "the channel `{}` is no address of the standard, such as %IX0.1; it is left out",
                 other.text
             );
-            self.left_out(other.at.0, &what);
+            self.left_out(other.at.0, what);
             made.address = None;
         }
         if decl.inverted {
@@ -133,7 +138,7 @@ impl<'d> Lower<'d> {
             }
         }
         if let Some(safe) = &decl.safe {
-            self.left_out(safe.at.0, "the value of an output after a fault is left out");
+            self.left_out(safe.at.0, say!("the value of an output after a fault is left out"));
             made.safe = None;
         }
         Some(made)
@@ -166,12 +171,12 @@ impl<'d> Lower<'d> {
     fn processing(&mut self, chart: Option<usize>, body: &'d Body, span: Span, into: &mut Vec<Stmt>) {
         let slow = chart.and_then(|c| self.scopes.chart(c)).is_some_and(|c| self.pace(c).is_some());
         if slow {
-            self.differs(span, "a body of a chart with a period of its own; it runs in every scan");
+            self.differs(span, say!("a body of a chart with a period of its own; it runs in every scan"));
         }
         let at = At { chart, ..At::default() };
         let list = self.block(body.block(), &at, "Body");
         if !into.is_empty() && returns(into) {
-            self.lost(span, "RETURN in one of several bodies: those behind it would not run");
+            self.lost(span, say!("RETURN in one of several bodies: those behind it would not run"));
         }
         into.extend(list);
     }
@@ -249,13 +254,16 @@ impl<'d> Lower<'d> {
         if matches!(step.kind, StepKind::Enclosing) {
             self.lost(
                 step.name.at.0,
-                "an enclosing step, which IEC 61131-3 does not have: it has no counterpart there",
+                say!("an enclosing step, which IEC 61131-3 does not have: it has no counterpart there"),
             );
         }
         let in_line = macro_step && self.form.in_line();
         if in_line {
             self.of_macro(key, step, at);
-            self.left_out(step.name.at.0, "a macro-step is left out; its expansion stands in its place");
+            self.left_out(
+                step.name.at.0,
+                say!("a macro-step is left out; its expansion stands in its place"),
+            );
             return None;
         }
         let actions = self.actions(key, step, at);
@@ -265,7 +273,7 @@ impl<'d> Lower<'d> {
             (kind, _) => kind.clone(),
         };
         if step.initial && macro_step {
-            self.lost(step.name.at.0, "an initial macro-step, which there is not");
+            self.lost(step.name.at.0, say!("an initial macro-step, which there is not"));
         }
         let initial = match self.form {
             Form::Networks { .. } => self.initial(key),
@@ -294,14 +302,14 @@ impl<'d> Lower<'d> {
         let mut from: Vec<Name> = t.from.iter().map(|n| self.end(chart, n, false, 0)).collect();
         let mut to: Vec<Name> = t.to.iter().map(|n| self.end(chart, n, true, 0)).collect();
         if from.is_empty() {
-            self.differs(span, "a source transition has a step before it there that is always active");
+            self.differs(span, say!("a source transition has a step before it there that is always active"));
             let name = Name::new(self.names.free(at.program, "Source"), span);
             items.push(ChartItem::Step(nodes::step(name.clone(), true, span)));
             to.insert(0, name.clone());
             from.push(name);
         }
         if to.is_empty() {
-            self.differs(span, "a sink transition has a step behind it there that stays active");
+            self.differs(span, say!("a sink transition has a step behind it there that stays active"));
             let name = Name::new(self.names.free(at.program, "Sink"), span);
             items.push(ChartItem::Step(nodes::step(name.clone(), false, span)));
             to.push(name);
@@ -366,7 +374,7 @@ impl<'d> Lower<'d> {
             }
             list = vec![nodes::when(is, list, Vec::new(), span)];
         } else if !self.final_scan && uses.len() > 1 {
-            self.differs(span, "the body runs once more when its action ends, as in IEC 61131-3");
+            self.differs(span, say!("the body runs once more when its action ends, as in IEC 61131-3"));
         }
         let body = Body::St(nodes::block(list, span));
         NamedAction {

@@ -2,8 +2,8 @@
 
 use g7_model::codes;
 use g7_model::{
-    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, Literal, Name, Path, Span, Stmt, StmtKind, Type, UnaryOp,
-    VarKind,
+    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, Literal, Name, Path, Said, Span, Stmt, StmtKind, Type,
+    UnaryOp, VarKind, say,
 };
 
 use super::lower::Lower;
@@ -93,7 +93,7 @@ impl<'d> Lower<'d> {
         match self.scopes.refer(at.chart, &path.names) {
             Some(Ref::Var(key)) if at.function => match self.constant_of(key, MOST_CONSTANTS) {
                 Some(value) => value,
-                None => self.nothing(span, "a function sees no variables but its own"),
+                None => self.nothing(span, say!("a function sees no variables but its own")),
             },
             Some(Ref::Var(key)) if at.condition && self.moved.contains(&key) => self.copy(key, span),
             Some(Ref::Var(key)) => self.variable(key, span, at),
@@ -112,7 +112,7 @@ impl<'d> Lower<'d> {
             Some(Ref::Section(chart, section)) if !at.function => {
                 self.section_value(chart, section, span, at)
             }
-            _ => self.nothing(span, &format!("`{}` has no counterpart", path.text())),
+            _ => self.nothing(span, say!("`{}` has no counterpart", path.text())),
         }
     }
 
@@ -144,7 +144,7 @@ impl<'d> Lower<'d> {
         }
     }
 
-    pub(super) fn nothing(&mut self, span: Span, what: &str) -> Expr {
+    pub(super) fn nothing(&mut self, span: Span, what: Said) -> Expr {
         self.lost(span, what);
         nodes::boolean(false, span)
     }
@@ -157,7 +157,7 @@ impl<'d> Lower<'d> {
             return self.active(step, span, at, 0);
         }
         if address.starts_with(['X', 'S']) {
-            return self.nothing(span, &format!("`%{address}` has no counterpart"));
+            return self.nothing(span, say!("`%{address}` has no counterpart"));
         }
         nodes::expr(ExprKind::Direct(address.into()), span)
     }
@@ -176,7 +176,7 @@ impl<'d> Lower<'d> {
             return any;
         }
         match (self.program_of(step.0), at.program) {
-            (None, _) => self.nothing(span, "a step of a chart that has no counterpart"),
+            (None, _) => self.nothing(span, say!("a step of a chart that has no counterpart")),
             (own, here) if own == here => self.step_member(step, "X", span),
             _ => {
                 let name = self.mirror(step, span);
@@ -247,7 +247,7 @@ impl<'d> Lower<'d> {
         match self.folded(e, chart, MOST_CONSTANTS) {
             Some(value) => value,
             None => {
-                self.lost(e.at.0, "an initial value is one number, text or name of a constant there");
+                self.lost(e.at.0, say!("an initial value is one number, text or name of a constant there"));
                 e.clone()
             }
         }
@@ -329,7 +329,7 @@ impl<'d> Lower<'d> {
                 self.note(&path, true, at);
                 let name = match self.value(&path, var.at.0, at).kind {
                     ExprKind::Path(path) if path.names.len() > 1 => {
-                        let what = "FOR counts in a variable of another program";
+                        let what = say!("FOR counts in a variable of another program");
                         self.lost(var.at.0, what);
                         None
                     }
@@ -387,7 +387,7 @@ impl<'d> Lower<'d> {
             }
             return Stmt { kind: StmtKind::Call(nodes::path(&[&name], span), args), at: span.into() };
         }
-        self.lost(span, &no_call(&path.text()));
+        self.lost(span, no_call(&path.text()));
         nodes::when(nodes::boolean(false, span), Vec::new(), Vec::new(), span)
     }
 
@@ -400,23 +400,25 @@ impl<'d> Lower<'d> {
         }
     }
 
-    pub(super) fn lost(&mut self, span: Span, what: &str) {
+    pub(super) fn lost(&mut self, span: Span, what: Said) {
         self.problems.push(g7_model::Problem::new(&codes::NOT_CARRIED, span, what));
     }
 
-    pub(super) fn differs(&mut self, span: Span, what: &str) {
+    pub(super) fn differs(&mut self, span: Span, what: Said) {
         self.problems.push(g7_model::Problem::new(&codes::DIFFERENT, span, what));
     }
 }
 
 /// The reason why a call stands for nothing there.
-fn no_call(called: &str) -> String {
+fn no_call(called: &str) -> Said {
     match called.to_ascii_uppercase().as_str() {
-        "INITCHART" => "a call of `INITCHART` puts a chart into its initial steps in the midst of a scan, which a chart of IEC 61131-3 cannot: it has a form for CODESYS alone, `IF SFCReset THEN INITCHART(G) END_IF` in the `pre` of `G`; `g7 gen st` holds it everywhere".into(),
-        "CLEARCHART" | "FREEZECHART" | "SETSTEP" | "RESETSTEP" => format!(
+        "INITCHART" => say!(
+            "a call of `INITCHART` puts a chart into its initial steps in the midst of a scan, which a chart of IEC 61131-3 cannot: it has a form for CODESYS alone, `IF SFCReset THEN INITCHART(G) END_IF` in the `pre` of `G`; `g7 gen st` holds it everywhere"
+        ),
+        "CLEARCHART" | "FREEZECHART" | "SETSTEP" | "RESETSTEP" => say!(
             "a call of `{called}` changes the situation of a chart from outside, which IEC 61131-3 does not have; `g7 gen st` holds it"
         ),
-        _ => format!("a call of `{called}` has no counterpart"),
+        _ => say!("a call of `{called}` has no counterpart"),
     }
 }
 

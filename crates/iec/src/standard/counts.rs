@@ -8,7 +8,7 @@ use std::collections::HashSet;
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
     ActionKind, BinaryOp, ChartItem, Expr, ExprKind, FbKind, Item, Literal, Nanos, Path, Span, Stmt, Target,
-    Type, Work,
+    Type, Work, say,
 };
 
 use super::bodies::At;
@@ -29,7 +29,7 @@ impl<'d> Lower<'d> {
         if let Some(known) = self.counts.get(&(step, seconds)) {
             return nodes::name(&[known], span);
         }
-        if !self.can_watch(span, at, "a step time") {
+        if !self.can_watch(span, at, say!("a step time")) {
             return nodes::int(0, span);
         }
         let own = self.names.step(step).to_string();

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, ChartKind, Document, Expr, Item, Nanos, Problem, ProfileName,
-    Qualifier, Span, StepKind, Stmt, Switch, Target, VarDecl,
+    Qualifier, Said, Span, StepKind, Stmt, Switch, Target, VarDecl, say,
 };
 
 use super::identifiers::Names;
@@ -328,13 +328,13 @@ impl<'d> Lower<'d> {
         if let Some((at, from, to)) = self.names.renamed.first() {
             let more = self.names.renamed.len() - 1;
             let tail =
-                if more > 0 { format!("; {more} more names are changed as well") } else { String::new() };
+                if more > 0 { say!("; {more} more names are changed as well") } else { Said::default() };
             let word = crate::words::everywhere().any(|w| w.eq_ignore_ascii_case(from));
-            let why = if word { ", because it is a word of IEC 61131-3" } else { "" };
-            let what = format!("`{from}` is called `{to}` there{why}{tail}");
+            let why = if word { say!(", because it is a word of IEC 61131-3") } else { Said::default() };
+            let what = say!("`{from}` is called `{to}` there{why}{tail}");
             let mut problem = Problem::new(&codes::RENAMED, *at, what);
             for (at, _, to) in self.names.renamed.iter().skip(1).take(100) {
-                problem.related.push((*at, format!("called `{to}`")));
+                problem.related.push((*at, say!("called `{to}`")));
             }
             problems.push(problem);
         }
@@ -355,18 +355,18 @@ impl<'d> Lower<'d> {
         }
         for (switch, at) in &profile.switches {
             if !matches!(switch, Switch::FinalScan(_) | Switch::ScanClock(_) | Switch::Bound(_)) {
-                let what = "this switch is not carried over; there the rules of the standard hold";
+                let what = say!("this switch is not carried over; there the rules of the standard hold");
                 self.differs(at.0, what);
             }
         }
     }
 
     pub(super) fn other_rules(&mut self, at: Span, profile: ProfileName) {
-        let what = format!(
+        let what = say!(
             "the chart evolves by the rules of {} and there by those of IEC 61131-3: one transition after the other, one scan each",
-            profile.name()
+            profile
         );
-        self.differs(at, &what);
+        self.differs(at, what);
     }
 
     /// Reports variables that one program writes and a later one reads: the later one sees the new
@@ -384,11 +384,12 @@ impl<'d> Lower<'d> {
             let title =
                 |p: usize| self.heads.get(p).and_then(|h| self.scopes.chart(*h)).map(|c| c.name.clone());
             let (Some(reader), Some(writer)) = (title(reader), title(writer)) else { continue };
-            let what = format!(
+            let what = say!(
                 "`{}` runs behind `{}` there, and sees `{name}` as that has left it in the same scan",
-                reader.text, writer.text
+                reader.text,
+                writer.text
             );
-            self.differs(reader.at.0, &what);
+            self.differs(reader.at.0, what);
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! `assemble.rs` notes them step by step and hands them down once all charts are there.
 
-use g7_model::{Action, ActionKind, Body, Chart, ChartItem, Name, NamedAction, Step, Target};
+use g7_model::{Action, ActionKind, Body, Chart, ChartItem, Name, NamedAction, Step, Target, say};
 
 use super::bodies::At;
 use super::lower::{DEEPEST, Lower};
@@ -18,8 +18,8 @@ impl<'d> Lower<'d> {
             for action in shown {
                 self.lost(
                     action.at.0,
-                    "an action of a macro-step whose expansion has a source, a sink or an initial step: it does not \
-                     begin and end with the steps that stand in its place there",
+                    say!("an action of a macro-step whose expansion has a source, a sink or an initial step: it does not \
+                     begin and end with the steps that stand in its place there"),
                 );
             }
             return;

@@ -2,7 +2,7 @@
 //! function blocks that a body before the charts calls; a step that others observe drives a
 //! variable.
 
-use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Section, Span, Type, VarKind};
+use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Said, Section, Span, Type, VarKind, say};
 
 use super::bodies::At;
 use super::lower::{Lower, Watch, WatchKind};
@@ -12,7 +12,7 @@ use crate::nodes;
 impl<'d> Lower<'d> {
     /// `↑e`, `↓e`: the blocks R_TRIG and F_TRIG. In the first scan there is no edge.
     pub(super) fn edge(&mut self, rise: bool, e: &Expr, span: Span, at: &At<'d>) -> Expr {
-        if !self.can_watch(span, at, "an edge") {
+        if !self.can_watch(span, at, say!("an edge")) {
             return nodes::boolean(false, span);
         }
         let value = self.expr(e, &At { program: None, condition: false, ..at.clone() });
@@ -49,7 +49,7 @@ impl<'d> Lower<'d> {
             }
             foreign = true;
         }
-        if !self.can_watch(span, at, "a time operator") {
+        if !self.can_watch(span, at, say!("a time operator")) {
             return nodes::boolean(false, span);
         }
         let file = At { program: None, condition: false, ..at.clone() };
@@ -104,12 +104,12 @@ impl<'d> Lower<'d> {
         self.watches.iter().find(|w| w.kind == *kind && w.value == *value).map(|w| w.name.clone())
     }
 
-    pub(super) fn can_watch(&mut self, span: Span, at: &At, what: &str) -> bool {
+    pub(super) fn can_watch(&mut self, span: Span, at: &At, what: Said) -> bool {
         let slow = at.chart.and_then(|c| self.scopes.chart(c)).is_some_and(|c| self.pace(c).is_some());
         if at.function {
-            self.lost(span, &format!("{what} in a function"));
+            self.lost(span, say!("{what} in a function"));
         } else if slow {
-            self.lost(span, &format!("{what} in a chart with a period of its own"));
+            self.lost(span, say!("{what} in a chart with a period of its own"));
         }
         !at.function && !slow
     }

@@ -5,7 +5,7 @@
 
 use std::ops::Range;
 
-use g7_model::codes;
+use g7_model::{Said, codes, say};
 use roxmltree::{Document, ParsingOptions};
 
 use crate::report::Report;
@@ -22,12 +22,12 @@ const MOST_ATTRIBUTES: usize = 200;
 /// The text of the file, if it is UTF-8.
 pub fn text<'a>(bytes: &'a [u8], report: &mut Report) -> Option<&'a str> {
     if bytes.len() > MOST_BYTES {
-        let what = format!("the file has {} bytes; at most {MOST_BYTES} are read", bytes.len());
+        let what = say!("the file has {} bytes; at most {MOST_BYTES} are read", bytes.len());
         report.say(&codes::TOO_LARGE, &(0..0), what);
         return None;
     }
     if wide(bytes).is_some() {
-        report.say(&codes::BAD_ENCODING, &(0..0), "the file is UTF-16; save it as UTF-8");
+        report.say(&codes::BAD_ENCODING, &(0..0), say!("the file is UTF-16; save it as UTF-8"));
         return None;
     }
     match std::str::from_utf8(bytes) {
@@ -35,8 +35,10 @@ pub fn text<'a>(bytes: &'a [u8], report: &mut Report) -> Option<&'a str> {
         Err(error) => {
             let at = error.valid_up_to();
             let what = match declared(bytes) {
-                Some(name) => format!("the file is declared as {name} and is not UTF-8; save it as UTF-8"),
-                None => "the file is not UTF-8 text; save it as UTF-8".to_string(),
+                Some(name) => {
+                    say!("the file is declared as {} and is not UTF-8; save it as UTF-8", Said::foreign(name))
+                }
+                None => say!("the file is not UTF-8 text; save it as UTF-8"),
             };
             report.say(&codes::BAD_ENCODING, &(at..at + 1), what);
             None
@@ -51,7 +53,7 @@ pub fn tree<'a>(text: &'a str, report: &mut Report) -> Option<Document<'a>> {
         && !name.eq_ignore_ascii_case("us-ascii")
         && let Some(at) = text.bytes().position(|b| b >= 0x80)
     {
-        let what = format!("the file is declared as {name}; save it as UTF-8");
+        let what = say!("the file is declared as {}; save it as UTF-8", Said::foreign(name));
         report.say(&codes::BAD_ENCODING, &(at..at + 1), what);
         return None;
     }
@@ -60,13 +62,17 @@ pub fn tree<'a>(text: &'a str, report: &mut Report) -> Option<Document<'a>> {
     match Document::parse_with_options(text, options) {
         Ok(tree) => Some(tree),
         Err(roxmltree::Error::NodesLimitReached) => {
-            let what = format!("the file has more than {MOST_NODES} elements");
+            let what = say!("the file has more than {MOST_NODES} elements");
             report.say(&codes::TOO_LARGE, &(0..0), what);
             None
         }
         Err(error) => {
             let at = offset(text, error.pos());
-            report.say(&codes::BAD_XML, &(at..at), format!("not well-formed XML: {}", plain(&error)));
+            report.say(
+                &codes::BAD_XML,
+                &(at..at),
+                say!("not well-formed XML: {}", Said::foreign(plain(&error))),
+            );
             None
         }
     }
@@ -106,13 +112,13 @@ fn survey(bytes: &[u8], report: &mut Report) -> Option<()> {
             report.say(
                 &codes::BAD_XML,
                 &at,
-                "a document type declaration; JGrafchart writes none and none is read",
+                say!("a document type declaration; JGrafchart writes none and none is read"),
             );
             return None;
         } else {
             let tag = Tag::read(bytes, open);
             if tag.attributes > MOST_ATTRIBUTES {
-                let what = format!("an element with more than {MOST_ATTRIBUTES} attributes");
+                let what = say!("an element with more than {MOST_ATTRIBUTES} attributes");
                 report.say(&codes::TOO_LARGE, &(open..open + 1), what);
                 return None;
             }
@@ -122,7 +128,7 @@ fn survey(bytes: &[u8], report: &mut Report) -> Option<()> {
                 depth += 1;
             }
             if depth > DEEPEST {
-                let what = format!("elements nested more than {DEEPEST} deep");
+                let what = say!("elements nested more than {DEEPEST} deep");
                 report.say(&codes::TOO_DEEP, &(open..open + 1), what);
                 return None;
             }

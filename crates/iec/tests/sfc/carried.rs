@@ -358,7 +358,7 @@ END_ACTION
 END_PROGRAM
 ";
     let list = text.replace("  CU c\n", "  LD a\n  ST b\n  CU c\n");
-    let said = |text: &str| import(text).1.into_iter().map(|p| p.what).collect::<Vec<_>>();
+    let said = |text: &str| import(text).1.into_iter().map(|p| p.what.to_string()).collect::<Vec<_>>();
     assert!(!said(text).iter().any(|w| w.starts_with("expected")), "{:?}", said(text));
     assert_eq!(said(&list), Vec::<String>::new());
     let back = g7_syntax::print(&import(text).0, None);

@@ -17,7 +17,7 @@ pub use go_on::{CLAUSES, STATEMENT};
 pub use row::{Told, Word};
 pub use values::{OPERATOR, PART, STEP, VALUE, of_qualifier, of_switch, of_type};
 
-use crate::Qualifier;
+use crate::{Language, ProfileName, Qualifier, StandardFunction, Type};
 
 /// The kinds of places, each with its words.
 pub const PLACES: [(&str, &[Word]); 12] = [
@@ -72,6 +72,20 @@ pub fn reserved() -> Vec<String> {
     words.sort();
     words.dedup();
     words
+}
+
+/// The sentence on a word in a language, by the one in English; other texts stay as they are.
+pub fn in_language(english: &str, language: Language) -> &str {
+    if language == Language::English {
+        return english;
+    }
+    let places = PLACES.into_iter().flat_map(|(_, list)| list.iter().map(|w| w.does));
+    let functions = StandardFunction::ALL.into_iter().map(|f| f.row().does);
+    let types = Type::names().filter_map(Type::named).map(of_type);
+    let qualifiers = Qualifier::ALL.into_iter().map(of_qualifier);
+    let profiles = ProfileName::ALL.into_iter().map(ProfileName::does);
+    let mut all = places.chain(functions).chain(types).chain(qualifiers).chain(profiles);
+    all.find(|told| told[0] == english).map_or(english, |told| language.told(told))
 }
 
 #[cfg(test)]

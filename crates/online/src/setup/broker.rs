@@ -104,7 +104,7 @@ pub(super) fn read(name: &str, table: &mut Table<'_>, found: &mut Found) -> Opti
     let password = secret::password(table, found);
     if let (Some(password), None) = (&password, &user) {
         found.wrong(password.from.at, "a password without a `user`").help =
-            Some("name the `user` that the broker knows".to_owned());
+            Some(g7_model::Said::foreign("name the `user` that the broker knows".to_owned()));
     }
     let client_id = table.text(found, "client-id");
     if let Some(long) = client_id.as_ref().filter(|id| id.value.is_empty() || id.value.len() > 65_535) {
@@ -116,12 +116,12 @@ pub(super) fn read(name: &str, table: &mut Table<'_>, found: &mut Found) -> Opti
     let sparkplug = table.table(found, "sparkplug").and_then(|table| sparkplug(table, found));
     if let (Some(status), true) = (&status, sparkplug.is_some()) {
         found.wrong(status.at, "an edge node of Sparkplug has no `status`").help =
-            Some("its births and deaths say whether it is there".to_owned());
+            Some(g7_model::Said::foreign("its births and deaths say whether it is there".to_owned()));
     }
     let events = events(name, table, found);
     if let (Some(events), true) = (&events, sparkplug.is_some()) {
         found.wrong(events.topic.at, "an edge node of Sparkplug publishes metrics, no events").help =
-            Some("declare the broker a second time, without `sparkplug`".to_owned());
+            Some(g7_model::Said::foreign("declare the broker a second time, without `sparkplug`".to_owned()));
     }
     let host = table.needed(found, "host", "10.0.0.7")?;
     Some(Broker {
@@ -172,14 +172,16 @@ fn events(name: &str, table: &mut Table<'_>, found: &mut Found) -> Option<Events
         table.end(found);
     } else {
         found.wrong(value.at, "`events` is the text of a topic, or a table").help =
-            Some("write `events = \"plant/sorter/events\"`".to_owned());
+            Some(g7_model::Said::foreign("write `events = \"plant/sorter/events\"`".to_owned()));
     }
     let topic = own_topic(topic?, found)?;
     let usual = || At::new(format!("{name}.events"), value.at);
     let file = file.unwrap_or_else(usual);
     if file.value.is_empty() || file.value.contains(['/', '\\', '\0']) {
         found.wrong(file.at, "the `file` of the events is the name of a file beside the io file").help =
-            Some("write `events = { topic = \"plant/sorter/events\", file = \"sorter.events\" }`".to_owned());
+            Some(g7_model::Said::foreign(
+                "write `events = { topic = \"plant/sorter/events\", file = \"sorter.events\" }`".to_owned(),
+            ));
         return None;
     }
     let number = |n: Option<At<i64>>, usual: i64| n.map_or(usual, |n| n.value).unsigned_abs();

@@ -188,7 +188,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     let name = At::new(row.name.to_owned(), row.at);
     let Some(table) = row.value.as_table() else {
         found.wrong(row.value_at, format!("the device {} is a table", row.name)).help =
-            Some(format!("begin it by a line `[devices.{}]`", row.name));
+            Some(g7_model::Said::foreign(format!("begin it by a line `[devices.{}]`", row.name)));
         return None;
     };
     let mut table = Table::new(table, row.at, format!("the device {}", row.name));
@@ -210,7 +210,7 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
             found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
-                Some(format!("the kinds are {}", known.join(", ")));
+                Some(g7_model::Said::foreign(format!("the kinds are {}", known.join(", "))));
             return None;
         }
     };
@@ -272,16 +272,18 @@ fn listen(table: &mut Table<'_>, found: &mut Found) -> Option<Listen> {
     let low_word_first = low_word_first(table, found);
     let address = address?;
     let Ok(parsed) = address.value.parse::<SocketAddr>() else {
-        found.wrong(address.at, "`listen` is an address of this machine with a port").help = Some(
-            "write `listen = \"127.0.0.1:1502\"`, or \"0.0.0.0:502\" for all of its addresses".to_owned(),
-        );
+        found.wrong(address.at, "`listen` is an address of this machine with a port").help =
+            Some(g7_model::Said::foreign(
+                "write `listen = \"127.0.0.1:1502\"`, or \"0.0.0.0:502\" for all of its addresses".to_owned(),
+            ));
         return None;
     };
     if !parsed.ip().is_loopback() && !open.is_some_and(|open| open.value) {
         found
             .wrong(address.at, "Modbus has no users and no keys: whoever reaches this address may write")
-            .help =
-            Some("listen at 127.0.0.1, or say `access = \"anyone\"` where the network is closed".to_owned());
+            .help = Some(g7_model::Said::foreign(
+            "listen at 127.0.0.1, or say `access = \"anyone\"` where the network is closed".to_owned(),
+        ));
         return None;
     }
     Some(Listen {
@@ -327,7 +329,7 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
             found
                 .wrong(device.name.at, what)
                 .related
-                .push((first.name.at, "this is the other one".to_owned()));
+                .push((first.name.at, g7_model::Said::foreign("this is the other one".to_owned())));
         }
     }
 }
@@ -344,7 +346,7 @@ pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, fou
             found
                 .wrong(file.at, format!("`{}` would hold two things", file.value))
                 .related
-                .push((first.at, "this is the other one".to_owned()));
+                .push((first.at, g7_model::Said::foreign("this is the other one".to_owned())));
         }
     }
 }
@@ -359,7 +361,7 @@ pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
             found
                 .wrong(device.name.at, what)
                 .related
-                .push((first.name.at, "this is the other one".to_owned()));
+                .push((first.name.at, g7_model::Said::foreign("this is the other one".to_owned())));
         }
     }
 }

@@ -63,7 +63,7 @@ fn signals(table: &mut Table<'_>, found: &mut Found) -> Option<Option<Vec<At<Str
         DeValue::Array(names) => names,
         _ => {
             found.wrong(value.at, "`signals` of [history] is \"all\", or a list of names").help =
-                Some("write `signals = [\"start\", \"X3\"]`".to_owned());
+                Some(g7_model::Said::foreign("write `signals = [\"start\", \"X3\"]`".to_owned()));
             return None;
         }
     };
@@ -79,7 +79,7 @@ fn signals(table: &mut Table<'_>, found: &mut Found) -> Option<Option<Vec<At<Str
     }
     if read.is_empty() {
         found.wrong(value.at, "a history without signals records nothing").help =
-            Some("name some, or leave `signals` out for all".to_owned());
+            Some(g7_model::Said::foreign("name some, or leave `signals` out for all".to_owned()));
         return None;
     }
     Some(Some(read))

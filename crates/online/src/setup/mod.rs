@@ -271,10 +271,11 @@ fn metrics(table: &mut Table<'_>, found: &mut Found) -> Option<At<SocketAddr>> {
     match text.value.parse::<SocketAddr>() {
         Ok(address) if address.ip().is_loopback() => Some(At::new(address, text.at)),
         Ok(_) | Err(_) => {
-            found.wrong(text.at, "`metrics` is an address of this machine alone, with a port").help = Some(
-                "write `metrics = \"127.0.0.1:9464\"`; from elsewhere, ask through an agent or a tunnel"
-                    .to_owned(),
-            );
+            found.wrong(text.at, "`metrics` is an address of this machine alone, with a port").help =
+                Some(g7_model::Said::foreign(
+                    "write `metrics = \"127.0.0.1:9464\"`; from elsewhere, ask through an agent or a tunnel"
+                        .to_owned(),
+                ));
             None
         }
     }
@@ -305,7 +306,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
     }
     let Some(table) = row.value.as_table() else {
         found.wrong(row.value_at, format!("`{}` is wired to a text or a table", row.name)).help =
-            Some(format!("write `{} = \"device.point\"`", row.name));
+            Some(g7_model::Said::foreign(format!("write `{} = \"device.point\"`", row.name)));
         return None;
     };
     let mut table = Table::new(table, row.at, format!("the channel {}", row.name));

@@ -121,7 +121,8 @@ pub(super) fn client(table: &mut Table<'_>, found: &mut Found) -> Option<OpcUa> 
     let uncertain = table.word(found, "uncertain", &[("bad", false), ("good", true)]);
     let url = table.needed(found, "url", "opc.tcp://10.0.0.7:4840")?;
     if let Err(why) = address(&url.value) {
-        found.wrong(url.at, why).help = Some("write `url = \"opc.tcp://10.0.0.7:4840\"`".to_owned());
+        found.wrong(url.at, why).help =
+            Some(g7_model::Said::foreign("write `url = \"opc.tcp://10.0.0.7:4840\"`".to_owned()));
         return None;
     }
     Some(OpcUa {
@@ -143,11 +144,12 @@ fn user(table: &mut Table<'_>, found: &mut Found) -> Option<(String, Held)> {
     match (&user, &password) {
         (None, Some(password)) => {
             found.wrong(password.from.at, "a password without a `user`").help =
-                Some("name the `user` that the server knows".to_owned());
+                Some(g7_model::Said::foreign("name the `user` that the server knows".to_owned()));
         }
         (Some(user), None) => {
-            found.wrong(user.at, "a user without a password").help =
-                Some("name its file: `password-file = \"line1.password\"`".to_owned());
+            found.wrong(user.at, "a user without a password").help = Some(g7_model::Said::foreign(
+                "name its file: `password-file = \"line1.password\"`".to_owned(),
+            ));
         }
         (None, None) | (Some(_), Some(_)) => {}
     }
@@ -188,9 +190,11 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     let silence = table.duration(found, "silence", Nanos::SECOND, Nanos::HOUR);
     let address = address?;
     let Ok(parsed) = address.value.parse::<SocketAddr>() else {
-        found.wrong(address.at, "`listen` is an address of this machine with a port").help = Some(
-            "write `listen = \"127.0.0.1:4840\"`, or \"0.0.0.0:4840\" for all of its addresses".to_owned(),
-        );
+        found.wrong(address.at, "`listen` is an address of this machine with a port").help =
+            Some(g7_model::Said::foreign(
+                "write `listen = \"127.0.0.1:4840\"`, or \"0.0.0.0:4840\" for all of its addresses"
+                    .to_owned(),
+            ));
         return None;
     };
     let server = OpcUaServer {
@@ -204,7 +208,8 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     let others = !parsed.ip().is_loopback();
     if let Some(none) = security.filter(|s| others && s.value == Security::None) {
         let what = "without security whoever reaches this address reads along and writes";
-        found.wrong(none.at, what).help = Some("leave `security` out, or listen at 127.0.0.1".to_owned());
+        found.wrong(none.at, what).help =
+            Some(g7_model::Said::foreign("leave `security` out, or listen at 127.0.0.1".to_owned()));
         return None;
     }
     Some(server)

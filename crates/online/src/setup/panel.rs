@@ -100,7 +100,7 @@ pub(super) fn limits(table: &mut Table<'_>, found: &mut Found) -> Limits {
         found
             .wrong(max.at, "the greatest number is less than the least")
             .related
-            .push((min.at, "this is the least".to_owned()));
+            .push((min.at, g7_model::Said::foreign("this is the least".to_owned())));
     }
     let within = |x: f64| {
         min.as_ref().is_none_or(|least| x >= least.value) && max.as_ref().is_none_or(|most| x <= most.value)

@@ -163,12 +163,12 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
         Ok((device, point)) => Some((At::new(device.to_owned(), at), point)),
         Err(why) => {
             let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
-            found.wrong(at, what).help = Some(
+            found.wrong(at, what).help = Some(g7_model::Said::foreign(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
                  \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"plc.DB1.DBX0.0\", \
                  \"board.line(17)\", \"desk.button()\", \"plc.node(ns=2;s=Level)\", \"line1.good()\""
                     .to_owned(),
-            );
+            ));
             None
         }
     }

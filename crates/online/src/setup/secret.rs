@@ -87,7 +87,7 @@ pub(super) fn password(table: &mut Table<'_>, found: &mut Found) -> Option<Held>
         found
             .wrong(variable.from.at, "there are two passwords")
             .related
-            .push((file.from.at, "this is the other one".to_owned()));
+            .push((file.from.at, g7_model::Said::foreign("this is the other one".to_owned())));
     }
     file.or(variable)
 }
@@ -101,7 +101,7 @@ pub(super) fn tls(table: &mut Table<'_>, found: &mut Found) -> Option<Tls> {
     }
     let Some(rows) = value.value.as_table() else {
         found.wrong(at, "`tls` is true, or a table with the files of the certificates").help =
-            Some("write `tls = true` or `tls = { ca = \"ca.pem\" }`".to_owned());
+            Some(g7_model::Said::foreign("write `tls = true` or `tls = { ca = \"ca.pem\" }`".to_owned()));
         return None;
     };
     let mut table = Table::new(rows, at, "`tls`");
@@ -129,7 +129,9 @@ pub(super) fn read<'d>(
     mut read: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
 ) -> Vec<Problem> {
     let mut problems = Vec::new();
-    let mut wrong = |at: Span, what: String| problems.push(Problem::new(&codes::BAD_WIRING, at, what));
+    let mut wrong = |at: Span, what: String| {
+        problems.push(Problem::new(&codes::BAD_WIRING, at, g7_model::Said::foreign(what)))
+    };
     for (password, tls) in peers {
         if let Some(password) = password {
             match read(&password.from.value) {

@@ -51,11 +51,11 @@ pub(super) fn server(mut table: Table<'_>, found: &mut Found) -> Server {
     match (&read.cert, &read.key) {
         (Some(only), None) => {
             found.wrong(only.at, "[server] has a `cert` and no `key`").help =
-                Some("name the file with its private key as `key`".to_owned());
+                Some(g7_model::Said::foreign("name the file with its private key as `key`".to_owned()));
         }
         (None, Some(only)) => {
             found.wrong(only.at, "[server] has a `key` and no `cert`").help =
-                Some("name the file with its certificate as `cert`".to_owned());
+                Some(g7_model::Said::foreign("name the file with its certificate as `cert`".to_owned()));
         }
         (Some(_), Some(_)) | (None, None) => {}
     }
@@ -68,7 +68,9 @@ pub(super) fn encrypted(server: &Server, devices: &[Device], found: &mut Found) 
     let elsewhere = devices.iter().any(|device| matches!(device.kind, Kind::OpcUaServer(_)));
     if let (Some(users), None, false) = (&server.users, &server.cert, elsewhere) {
         found.wrong(users.at, "passwords go over encrypted connections alone, and there is no `cert`").help =
-            Some("`g7 cert` makes a certificate and its key; name them as `cert` and `key`".to_owned());
+            Some(g7_model::Said::foreign(
+                "`g7 cert` makes a certificate and its key; name them as `cert` and `key`".to_owned(),
+            ));
     }
 }
 
@@ -78,7 +80,7 @@ fn host(table: &mut Table<'_>, found: &mut Found) -> Option<At<IpAddr>> {
         Ok(address) => Some(At::new(address, text.at)),
         Err(_) => {
             found.wrong(text.at, "`host` is an address of this machine, such as \"127.0.0.1\"").help =
-                Some("\"0.0.0.0\" means each address of it".to_owned());
+                Some(g7_model::Said::foreign("\"0.0.0.0\" means each address of it".to_owned()));
             None
         }
     }
@@ -96,7 +98,7 @@ pub(super) fn log(table: &mut Table<'_>, found: &mut Found) -> Option<LogFile> {
         None => {
             if let Some(only) = days.or(mib) {
                 found.wrong(only.at, "there is no `log` to be kept so long").help =
-                    Some("name its file: `log = \"machine.log\"`".to_owned());
+                    Some(g7_model::Said::foreign("name its file: `log = \"machine.log\"`".to_owned()));
             }
             None
         }

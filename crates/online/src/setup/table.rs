@@ -39,7 +39,7 @@ impl Found {
     }
 
     pub(super) fn wrong(&mut self, at: Span, what: impl Into<String>) -> &mut Problem {
-        self.problems.push(Problem::new(&codes::BAD_WIRING, at, what));
+        self.problems.push(Problem::new(&codes::BAD_WIRING, at, g7_model::Said::foreign(what)));
         let last = self.problems.len() - 1;
         &mut self.problems[last]
     }
@@ -97,7 +97,8 @@ impl<'t> Table<'t> {
     ) -> Option<At<String>> {
         if self.table.get(key).is_none() {
             let (at, what) = (self.at, format!("{} has no `{key}`", self.what));
-            found.wrong(at, what).help = Some(format!("write `{key} = \"{example}\"`"));
+            found.wrong(at, what).help =
+                Some(g7_model::Said::foreign(format!("write `{key} = \"{example}\"`")));
         }
         self.text(found, key)
     }
@@ -162,7 +163,7 @@ impl<'t> Table<'t> {
         let table = value.get_ref().as_table();
         if table.is_none() {
             found.wrong(at, format!("`{key}` of {} is a table", self.what)).help =
-                Some(format!("begin it by a line `[{key}]`"));
+                Some(g7_model::Said::foreign(format!("begin it by a line `[{key}]`")));
         }
         table.map(|table| (table, at))
     }
@@ -185,7 +186,7 @@ impl<'t> Table<'t> {
             }
             let known: Vec<String> = self.asked.iter().map(|key| format!("`{key}`")).collect();
             found.wrong(row.at, format!("{} has no setting `{}`", self.what, row.name)).help =
-                Some(format!("its settings are {}", known.join(", ")));
+                Some(g7_model::Said::foreign(format!("its settings are {}", known.join(", "))));
         }
     }
 }

@@ -11,7 +11,7 @@ use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
 use g7_engine::{Addr, GroupId, State, StepId};
 use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Sample, Signal, Value, read_text, write_text};
-use g7_model::{Nanos, Span, Type};
+use g7_model::{Nanos, Said, Span, Type, say};
 
 pub use ask::{Answer, Ask, Options};
 pub use tables::Table;
@@ -175,15 +175,16 @@ impl Bench {
 
     /// Why nothing of this name can be set, and what can be done instead or names that come
     /// near (empty where there are none).
-    pub fn no_item(&self, name: &str) -> (String, String) {
-        let near = self.suggestions(name).trim_start_matches("; ").to_owned();
+    pub fn no_item(&self, name: &str) -> (Said, Said) {
+        let near = self.near(name);
         match name.strip_prefix('%') {
             Some(_) if kept_by_system(&name.to_ascii_uppercase()) => {
-                (format!("`{name}` is kept by the system: it can be read, not set"), near)
+                (say!("`{name}` is kept by the system: it can be read, not set"), near)
             }
             Some(rest) if rest.starts_with(['X', 'x']) => {
-                let help = "PRE sets and resets steps (`%X12 := TRUE`); the terminal has the system bits";
-                (format!("`{name}` is the state of a step: it cannot be set"), help.to_owned())
+                let help =
+                    say!("PRE sets and resets steps (`%X12 := TRUE`); the terminal has the system bits");
+                (say!("`{name}` is the state of a step: it cannot be set"), help)
             }
             Some(_) => {
                 let bits: Vec<String> = self
@@ -193,12 +194,12 @@ impl Bench {
                     .map(|i| format!("`{}`", i.name))
                     .collect();
                 let help = match bits.join(", ") {
-                    none if none.is_empty() => "the system bits are those of `profile pl7`".to_owned(),
-                    bits => format!("there are {bits}"),
+                    none if none.is_empty() => say!("the system bits are those of `profile pl7`"),
+                    bits => say!("there are {}", Said::foreign(bits)),
                 };
-                (format!("nothing at `{name}` can be set"), help)
+                (say!("nothing at `{name}` can be set"), help)
             }
-            None => (format!("nothing named `{name}` can be set"), near),
+            None => (say!("nothing named `{name}` can be set"), near),
         }
     }
 
@@ -208,11 +209,19 @@ impl Bench {
             return format!("there is no `{name}`{}", self.suggestions(name));
         }
         let (what, help) = self.no_item(name);
-        if help.is_empty() { what } else { format!("{what}; {help}") }
+        if help.is_empty() { what.to_string() } else { format!("{what}; {help}") }
     }
 
     /// Suggests names similar to an unknown name, for a message.
     pub fn suggestions(&self, name: &str) -> String {
+        match self.near(name) {
+            none if none.is_empty() => String::new(),
+            near => format!("; {near}"),
+        }
+    }
+
+    /// Asks whether one of the names was meant that come near; empty where there are none.
+    fn near(&self, name: &str) -> Said {
         let mut near: Vec<(usize, &str)> = self
             .items
             .iter()
@@ -221,8 +230,10 @@ impl Bench {
             .collect();
         near.sort_unstable();
         near.truncate(3);
-        let near: Vec<String> = near.into_iter().map(|(_, n)| format!("`{n}`")).collect();
-        if near.is_empty() { String::new() } else { format!("; is it {}?", near.join(" or ")) }
+        let mut near = near.into_iter().map(|(_, n)| say!("`{n}`"));
+        let Some(first) = near.next() else { return Said::default() };
+        let all = near.fold(first, |all, next| say!("{all} or {next}"));
+        say!("is it {all}?")
     }
 
     /// The present value of an item.

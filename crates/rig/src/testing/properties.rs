@@ -3,7 +3,7 @@
 
 use std::ops::Range;
 
-use g7_model::{Document, Expr, Problem, ProfileName, Property, PropertyKind, Severity, Type, codes};
+use g7_model::{Document, Expr, Problem, ProfileName, Property, PropertyKind, Severity, Type, codes, say};
 
 use super::{sides, statements};
 use crate::bench::{self, Ask, Bench, Options};
@@ -91,7 +91,7 @@ pub fn claims<'s>(
     problems.extend(found);
     let Some(bench) = bench else { return Ok((None, problems)) };
     for (answer, ask) in bench.answers.iter().zip(&asks).filter(|(answer, _)| answer.ty != Type::Bool) {
-        let what = format!("a condition is a BOOL, and this is a {}", answer.ty.name());
+        let what = say!("a condition is a BOOL, and this is a {}", answer.ty);
         problems.push(Problem::new(&codes::TEST_TYPE, ask.expr.at.0, what));
     }
     let is_wrong = problems.iter().any(|p| p.severity() == Severity::Error);

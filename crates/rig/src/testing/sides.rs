@@ -3,7 +3,7 @@
 
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Symbols;
-use g7_model::{BinaryOp, Expr, ExprKind, Path, Problem, codes};
+use g7_model::{BinaryOp, Expr, ExprKind, Path, Problem, codes, say};
 
 use crate::{Activity, Ask, Bench, Role};
 
@@ -26,8 +26,10 @@ impl Needs {
     fn problem(&self, e: &Expr) -> Option<Problem> {
         let (plant, charts) = (self.plant.as_ref()?, self.charts.as_ref()?);
         let what =
-            format!("`{plant}` is the plant's and `{charts}` the charts': one expression cannot ask both");
-        let help = "conditions on either can be joined by `and` or a comma; the plant knows the charts' outputs as well";
+            say!("`{plant}` is the plant's and `{charts}` the charts': one expression cannot ask both");
+        let help = say!(
+            "conditions on either can be joined by `and` or a comma; the plant knows the charts' outputs as well"
+        );
         Some(Problem::new(&codes::TEST_NAME, e.at.0, what).help(help))
     }
 

@@ -1,7 +1,8 @@
 //! Prepares the statements of a test for execution: names become items, expressions become asks.
 
 use g7_model::{
-    Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Scenario, Span, TestStmt, TestStmtKind, Type, codes,
+    Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Said, Scenario, Span, TestStmt, TestStmtKind, Type,
+    codes, say,
 };
 
 use super::sides;
@@ -74,8 +75,12 @@ pub(super) fn unknown_plant(source: &Source, name: &Name) -> Option<Problem> {
     if g7_compile::plant::plants(&source.document).any(|p| p.name.text == name.text) {
         return None;
     }
-    let problem = Problem::new(&codes::TEST_PLANT, name.at.0, format!("there is no plant `{}`", name.text));
-    Some(if there.is_empty() { problem } else { problem.help(format!("there is {}", there.join(", "))) })
+    let problem = Problem::new(&codes::TEST_PLANT, name.at.0, say!("there is no plant `{}`", name.text));
+    Some(if there.is_empty() {
+        problem
+    } else {
+        problem.help(say!("there is {}", Said::foreign(there.join(", "))))
+    })
 }
 
 /// Prepares a test.
@@ -130,7 +135,7 @@ impl Planner<'_> {
     fn pulse(&mut self, target: &Expr, time: Option<Nanos>) -> Does {
         let Some(item) = self.item(target, false) else { return Does::Nothing };
         if self.bench.items.get(item).is_some_and(|i| i.ty != Type::Bool) {
-            self.wrong(target, format!("`{}` is not a BOOL, so it cannot be pulsed", written(target)), None);
+            self.wrong(target, say!("`{}` is not a BOOL, so it cannot be pulsed", written(target)), None);
         }
         Does::Pulse(item, time)
     }
@@ -138,9 +143,9 @@ impl Planner<'_> {
     fn fault(&mut self, name: Option<&Name>) -> Does {
         let words = ["unstable", "bound", "overflow", "division", "range", "forcing", "table"];
         if let Some(name) = name.filter(|n| !words.contains(&&*n.text)) {
-            let what = format!("there is no fault `{}`", name.text);
+            let what = say!("there is no fault `{}`", name.text);
             let problem = Problem::new(&codes::TEST_NAME, name.at.0, what);
-            self.problems.push(problem.help(format!("there are {}", words.join(", "))));
+            self.problems.push(problem.help(say!("there are {}", Said::foreign(words.join(", ")))));
         }
         Does::ExpectFault(name.map(|n| n.text.to_string()))
     }
@@ -162,19 +167,15 @@ impl Planner<'_> {
         let item = self.bench.items.get(at)?;
         match item.role {
             Role::Output if !hold => {
-                let help = format!("`force {name} := …` holds an output");
-                self.wrong(target, format!("`{name}` is an output: the charts set it"), Some(help));
+                let help = say!("`force {name} := …` holds an output");
+                self.wrong(target, say!("`{name}` is an output: the charts set it"), Some(help));
             }
             Role::Plant if hold => {
-                self.wrong(
-                    target,
-                    format!("`{name}` is a state of the plant: it can be set, not held"),
-                    None,
-                );
+                self.wrong(target, say!("`{name}` is a state of the plant: it can be set, not held"), None);
             }
             Role::Input(index) if !hold && self.is_driven(index) => {
-                let help = format!("`force {name} := …` holds it against the plant");
-                self.wrong(target, format!("`{name}` is driven by the plant"), Some(help));
+                let help = say!("`force {name} := …` holds it against the plant");
+                self.wrong(target, say!("`{name}` is driven by the plant"), Some(help));
             }
             Role::Input(_) | Role::Output | Role::Variable | Role::Plant => {}
         }
@@ -186,7 +187,7 @@ impl Planner<'_> {
         plant.is_some_and(|p| p.coupling.to_charts.iter().any(|(_, to)| *to == index))
     }
 
-    fn wrong(&mut self, target: &Expr, what: String, help: Option<String>) {
+    fn wrong(&mut self, target: &Expr, what: Said, help: Option<Said>) {
         let mut problem = Problem::new(&codes::TEST_NAME, target.at.0, what);
         problem.help = help.filter(|h| !h.is_empty());
         self.problems.push(problem);
@@ -281,7 +282,7 @@ fn judge_lines(body: &[TestStmt], lines: &[Line], bench: &Bench, problems: &mut 
     let condition = |check: &Check, problems: &mut Vec<Problem>| {
         for asked in check.asks.iter().filter(|a| !a.bit) {
             if let Some(ty) = ty(asked.ask).filter(|t| *t != Type::Bool) {
-                let what = format!("this is {ty}, a condition is BOOL");
+                let what = say!("this is {ty}, a condition is BOOL");
                 problems.push(Problem::new(&codes::TEST_TYPE, asked.at, what));
             }
         }
@@ -289,7 +290,7 @@ fn judge_lines(body: &[TestStmt], lines: &[Line], bench: &Bench, problems: &mut 
     let value = |item: ItemId, ask: AskId, e: &Expr, problems: &mut Vec<Problem>| {
         let (Some(item), Some(from)) = (bench.items.get(item), ty(ask)) else { return };
         if !fits(from, item.ty, e) {
-            let what = format!("this is {from}, `{}` is {}", item.name, item.ty);
+            let what = say!("this is {from}, `{}` is {}", item.name, item.ty);
             problems.push(Problem::new(&codes::TEST_TYPE, e.at.0, what));
         }
     };

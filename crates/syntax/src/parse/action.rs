@@ -5,7 +5,7 @@ use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Name, Order, Path, Problem, Qualifier, Situation, Span, Stmt, Target,
-    Work, codes,
+    Work, codes, say,
     words::{ACTION, has, texts},
 };
 
@@ -28,7 +28,7 @@ impl Parser<'_> {
                 return actions;
             }
             if self.at(Tok::End) || self.cur.newline && self.at_next_item() {
-                self.close(Tok::RBrace, "`}` after the actions of the step", open);
+                self.close(Tok::RBrace, say!("`}}` after the actions of the step"), open);
                 return actions;
             }
             let start = self.cur.start;
@@ -67,19 +67,19 @@ impl Parser<'_> {
             "force" => self.force(),
             "enable" => {
                 self.bump();
-                Order::Enable(self.name("the name of a chart"))
+                Order::Enable(self.name(say!("the name of a chart")))
             }
             "mask" => {
                 self.bump();
-                Order::Mask(self.name("the name of a chart or of an output"))
+                Order::Mask(self.name(say!("the name of a chart or of an output")))
             }
             "call" => {
                 self.bump();
-                Order::Call(self.name("the name of a task"))
+                Order::Call(self.name(say!("the name of a task")))
             }
             "enclose" => {
                 self.bump();
-                Order::Enclose(self.name("the name of a chart"))
+                Order::Enclose(self.name(say!("the name of a chart")))
             }
             _ => return self.qualified(),
         };
@@ -96,7 +96,7 @@ impl Parser<'_> {
     fn on_event(&mut self) -> ActionKind {
         self.bump();
         let event = self.condition();
-        self.expect(Tok::Colon, "`:` after the event");
+        self.expect(Tok::Colon, say!("`:` after the event"));
         ActionKind::OnEvent { event, work: self.work() }
     }
 
@@ -104,9 +104,9 @@ impl Parser<'_> {
     fn each_scan(&mut self) -> ActionKind {
         self.bump();
         if !self.eat_word("scan") {
-            self.expected_help("`scan`", Some("write `each scan: n := n + 1`"));
+            self.expected_help(say!("`scan`"), Some(say!("write `each scan: n := n + 1`")));
         }
-        self.expect(Tok::Colon, "`:`");
+        self.expect(Tok::Colon, say!("`:`"));
         let work = self.work();
         ActionKind::EachScan { work, condition: self.if_condition() }
     }
@@ -118,7 +118,7 @@ impl Parser<'_> {
     /// `force G := …`.
     fn force(&mut self) -> Order {
         self.bump();
-        let chart = self.name("the name of a chart");
+        let chart = self.name(say!("the name of a chart"));
         self.assign_sign();
         if self.eat_word("INIT") {
             return Order::Force(chart, Situation::Init);
@@ -126,21 +126,21 @@ impl Parser<'_> {
         let open = self.here();
         if self.at_name() {
             let text = format!("{{{}}}", self.slice(self.cur));
-            self.slip_to(open, "the steps of a situation stand in braces", &text);
-            return Order::Force(chart, Situation::Steps(self.names("the name of a step")));
+            self.slip_to(open, say!("the steps of a situation stand in braces"), &text);
+            return Order::Force(chart, Situation::Steps(self.names(say!("the name of a step"))));
         }
-        if !self.expect(Tok::LBrace, "a situation: `{8, 11}`, `{}`, `{*}` or `INIT`") {
+        if !self.expect(Tok::LBrace, say!("a situation: `{{8, 11}}`, `{{}}`, `{{*}}` or `INIT`")) {
             return Order::Force(chart, Situation::Current);
         }
         if self.eat(Tok::Star) {
-            self.close(Tok::RBrace, "`}`", open);
+            self.close(Tok::RBrace, say!("`}}`"), open);
             return Order::Force(chart, Situation::Current);
         }
         let bare_init = self.at_word("INIT") && self.peek().kind == Tok::RBrace;
         let mut steps: Vec<Name> = Vec::new();
         while !matches!(self.cur.kind, Tok::RBrace | Tok::End) {
             let start = self.cur.start;
-            let name = self.name("the name of a step");
+            let name = self.name(say!("the name of a step"));
             if self.cur.start == start {
                 break;
             }
@@ -149,7 +149,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.close(Tok::RBrace, "`}` or `,`", open);
+        self.close(Tok::RBrace, say!("`}}` or `,`"), open);
         Order::Force(chart, if bare_init { Situation::Init } else { Situation::Steps(steps) })
     }
 
@@ -185,20 +185,24 @@ impl Parser<'_> {
                 let next = self.peek();
                 let named = self.at_name() && !next.newline && matches!(next.kind, Tok::Word | Tok::Ticked);
                 if named && self.slice(next) != "if" {
-                    self.slip(self.here(), "a time that is no number stands in parentheses", "write `(t)`");
+                    self.slip(
+                        self.here(),
+                        say!("a time that is no number stands in parentheses"),
+                        say!("write `(t)`"),
+                    );
                     return Some(self.expr());
                 }
-                let help = format!("write `{name} 5s …`");
+                let help = say!("write `{name} 5s …`");
                 if !matches!(self.cur.kind, Tok::Line | Tok::RBrace | Tok::End) {
-                    self.slip(at, &format!("`{name}` needs a time"), help);
+                    self.slip(at, say!("`{name}` needs a time"), help);
                 } else {
-                    self.expected_help("a time and a variable", Some(&help));
+                    self.expected_help(say!("a time and a variable"), Some(help));
                 }
             }
             Some(e) if !qualifier.timed() => {
                 let place = e.at.0;
-                let help = "the qualifiers L, D, SD, DS and SL take a time";
-                self.slip(place, &format!("`{name}` takes no time"), help);
+                let help = say!("the qualifiers L, D, SD, DS and SL take a time");
+                self.slip(place, say!("`{name}` takes no time"), help);
             }
             _ => {}
         }
@@ -209,7 +213,7 @@ impl Parser<'_> {
         let open = self.here();
         self.bump();
         let e = self.expr();
-        self.close(Tok::RParen, "`)`", open);
+        self.close(Tok::RParen, say!("`)`"), open);
         e
     }
 
@@ -217,7 +221,7 @@ impl Parser<'_> {
     fn target_of_action(&mut self) -> Target {
         let start = self.cur.start;
         if self.at(Tok::LBrace) {
-            return Target::Work(Work::Block(self.block("`{`")));
+            return Target::Work(Work::Block(self.block(say!("`{{`"))));
         }
         if self.at(Tok::Direct) {
             let token = self.bump();
@@ -229,7 +233,7 @@ impl Parser<'_> {
             return self.assigned(Expr { kind: ExprKind::Direct(name), at }, start);
         }
         if !self.at_name() {
-            self.expected("a variable, the name of an action, an assignment or `{`");
+            self.expected(say!("a variable, the name of an action, an assignment or `{{`"));
             return Target::Path(Path { names: vec![Name::new("", self.behind())] });
         }
         let path = self.path();
@@ -261,7 +265,7 @@ impl Parser<'_> {
         if !self.at(Tok::Word) || !self.at_name() || next.newline || !before_target {
             return None;
         }
-        self.unknown(self.word(), "a qualifier", &beginnings());
+        self.unknown(self.word(), say!("a qualifier"), &beginnings());
         self.duration_if();
         let target = self.target_of_action();
         let condition = self.if_condition();
@@ -283,11 +287,11 @@ impl Parser<'_> {
             let short: String = text.chars().take(40).collect();
             let qualifier = if assigned { Qualifier::P1 } else { Qualifier::N };
             self.lexer.problems.add(at, || {
-                let problem = Problem::new(&codes::EXPECTED, at, "an action begins with its qualifier");
+                let problem = Problem::new(&codes::EXPECTED, at, say!("an action begins with its qualifier"));
                 problem.help(if assigned {
-                    format!("write `P1 {short}` (once, on activation) or `each scan: {short}`")
+                    say!("write `P1 {short}` (once, on activation) or `each scan: {short}`")
                 } else {
-                    format!("write `N {short}` (while the step is active) or `S {short}` (until reset)")
+                    say!("write `N {short}` (while the step is active) or `S {short}` (until reset)")
                 })
             });
             self.told = Some(self.cur.start);
@@ -295,7 +299,7 @@ impl Parser<'_> {
             let kind = ActionKind::Qualified { qualifier, time: None, target, condition };
             return Some(Action { kind, at: self.since(start).into() });
         }
-        self.unexpected("an action or `}`", None);
+        self.unexpected(say!("an action or `}}`"), None);
         if self.cur.start == start {
             self.bump();
         }

@@ -4,16 +4,16 @@ use super::Parser;
 use super::marks::Level;
 use crate::lexer::Tok;
 use g7_model::{
-    Chart, ChartItem, ChartKind, Expr, ExprKind, Fix, Name, Nanos, Place, Problem, Span, Step, StepKind,
-    Transition, codes, words,
+    Chart, ChartItem, ChartKind, Expr, ExprKind, Fix, Name, Nanos, Place, Problem, Said, Span, Step,
+    StepKind, Transition, codes, say, words,
 };
 
 /// The words that a step can begin with.
 const STEP_WORDS: [&str; 6] = ["initial", "entry", "exit", "enclosing", "step", "macro"];
 
 /// A slip that is told in two places: the words, and the way out.
-const STEP_IN_TRANSITION: (&str, &str) =
-    ("only the name of the step stands in a transition", "leave out `step`");
+const STEP_IN_TRANSITION: (Said, Said) =
+    (say!("only the name of the step stands in a transition"), say!("leave out `step`"));
 
 impl Parser<'_> {
     /// A chart, an expansion or a task; its first word is in hand.
@@ -26,11 +26,11 @@ impl Parser<'_> {
         let start = self.cur.start;
         let (name, comment, every) = self.head(|p| {
             p.bump();
-            (p.name("the name of the chart"), p.comment_if(), p.period(kind))
+            (p.name(say!("the name of the chart")), p.comment_if(), p.period(kind))
         });
         let open = self.here();
         let mut items = Vec::new();
-        if self.expect(Tok::LBrace, "`{` and the steps of the chart") || self.at_chart_start() {
+        if self.expect(Tok::LBrace, say!("`{{` and the steps of the chart")) || self.at_chart_start() {
             self.chart_items(&mut items, open);
         }
         Chart { kind, name, comment, every, items, at: self.since(start).into() }
@@ -43,9 +43,13 @@ impl Parser<'_> {
             return None;
         }
         if kind != ChartKind::Chart {
-            self.slip(at, "only a `chart` has a period", "write `every` at the chart that uses this one");
+            self.slip(
+                at,
+                say!("only a `chart` has a period"),
+                say!("write `every` at the chart that uses this one"),
+            );
         }
-        Some(self.duration("the period, a duration")).filter(|_| kind == ChartKind::Chart)
+        Some(self.duration(say!("the period, a duration"))).filter(|_| kind == ChartKind::Chart)
     }
 
     /// The items up to the end of the chart, or to where the rest is known.
@@ -61,13 +65,13 @@ impl Parser<'_> {
                     return;
                 }
                 Tok::End => {
-                    self.close(Tok::RBrace, "`}` after the last item of the chart", open);
+                    self.close(Tok::RBrace, say!("`}}` after the last item of the chart"), open);
                     return;
                 }
                 _ => {}
             }
             if self.cur.newline && self.at_file_start() {
-                self.close(Tok::RBrace, "`}` before the next item of the file", open);
+                self.close(Tok::RBrace, say!("`}}` before the next item of the file"), open);
                 return;
             }
             let start = self.cur.start;
@@ -171,7 +175,7 @@ impl Parser<'_> {
         }
         if !again {
             let at = self.here();
-            let help = format!("write it in small letters: `{meant}`");
+            let help = say!("write it in small letters: `{meant}`");
             let mut fix = Fix::sure(help.clone(), at, meant);
             // The words behind it are mended with it.
             let mut token = next;
@@ -180,7 +184,7 @@ impl Parser<'_> {
                 token = self.lexer.ahead(token).token();
             }
             self.report(at, || {
-                Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is no word of the language here"))
+                Problem::new(&codes::UNKNOWN_WORD, at, say!("`{word}` is no word of the language here"))
                     .help(help)
                     .fix(fix)
             });
@@ -211,10 +215,10 @@ impl Parser<'_> {
         } else if self.at_name() {
             self.bump();
             let name = self.text.get(start as usize..self.prev.end as usize).unwrap_or_default();
-            let what = format!("`->` after the preceding step `{name}`");
-            self.expected_help(&what, Some("a transition is written `1 -> 2 when …`, a step `step 1`"));
+            let what = say!("`->` after the preceding step `{name}`");
+            self.expected_help(what, Some(say!("a transition is written `1 -> 2 when …`, a step `step 1`")));
         } else {
-            self.unexpected("a step, a transition or another item of the chart", None);
+            self.unexpected(say!("a step, a transition or another item of the chart"), None);
         }
         if self.cur.start == start {
             self.bump();
@@ -246,8 +250,8 @@ impl Parser<'_> {
             if kind != StepKind::Plain {
                 self.slip(
                     at,
-                    "a step is only one of entry, exit and enclosing",
-                    "leave out one of the words",
+                    say!("a step is only one of entry, exit and enclosing"),
+                    say!("leave out one of the words"),
                 );
             }
             kind = sort;
@@ -257,9 +261,9 @@ impl Parser<'_> {
             return self.macro_step(start, initial, &kind);
         }
         if !self.eat_word("step") {
-            self.expected_help("`step`", Some("for example `initial step 0`"));
+            self.expected_help(say!("`step`"), Some(say!("for example `initial step 0`")));
         }
-        let name = self.name("the name or number of the step");
+        let name = self.name(say!("the name or number of the step"));
         self.broken_name(&name);
         self.step_rest(start, name, kind, initial)
     }
@@ -288,8 +292,12 @@ impl Parser<'_> {
         let at = self.since(name.at.0.start);
         let text = self.text_at(at);
         self.lexer.problems.add(at, || {
-            Problem::new(&codes::EXPECTED, at, "a name with a blank or another sign stands in back-ticks")
-                .help(format!("write `` `{text}` `` or `{}`", text.replace([' ', '-'], "_")))
+            Problem::new(
+                &codes::EXPECTED,
+                at,
+                say!("a name with a blank or another sign stands in back-ticks"),
+            )
+            .help(say!("write `` `{text}` `` or `{}`", text.replace([' ', '-'], "_")))
         });
     }
 
@@ -301,17 +309,21 @@ impl Parser<'_> {
     fn macro_step(&mut self, start: u32, initial: bool, kind: &StepKind) -> Step {
         if *kind != StepKind::Plain {
             let at = self.since(start);
-            self.slip(at, "a macro-step is neither entry, exit nor enclosing", "leave out that word");
+            self.slip(
+                at,
+                say!("a macro-step is neither entry, exit nor enclosing"),
+                say!("leave out that word"),
+            );
         }
         self.eat_word("step");
-        let name = self.name("the name of the macro-step");
+        let name = self.name(say!("the name of the macro-step"));
         if self.at(Tok::Assign) {
-            self.slip_to(self.here(), "a macro-step's expansion stands behind `=`", "=");
+            self.slip_to(self.here(), say!("a macro-step's expansion stands behind `=`"), "=");
             self.bump();
         } else {
-            self.expect(Tok::Eq, "`=` and the name of the expansion");
+            self.expect(Tok::Eq, say!("`=` and the name of the expansion"));
         }
-        let expansion = self.name("the name of the expansion, a `macrochart`");
+        let expansion = self.name(say!("the name of the expansion, a `macrochart`"));
         self.step_rest(start, name, StepKind::Macro(expansion), initial)
     }
 
@@ -337,23 +349,23 @@ impl Parser<'_> {
             let at = self.here();
             self.slip(
                 at,
-                "the preceding steps are missing",
-                "a source transition is written `() -> 1 when …`",
+                say!("the preceding steps are missing"),
+                say!("a source transition is written `() -> 1 when …`"),
             );
             Vec::new()
         } else {
-            self.step_list("the preceding steps")
+            self.step_list(say!("the preceding steps"))
         };
         if self.at(Tok::Minus) && self.peek().kind == Tok::Arrow {
             let at = self.here().to(self.next.map_or(self.here(), |next| self.span_of(next)));
-            self.slip_to(at, "a transition is written with `->`", "->");
+            self.slip_to(at, say!("a transition is written with `->`"), "->");
             self.bump();
         }
         if self.at(Tok::Output) {
-            self.slip_to(self.here(), "a transition is written with `->`", "->");
+            self.slip_to(self.here(), say!("a transition is written with `->`"), "->");
             self.cur.kind = Tok::Arrow;
         }
-        if !self.expect(Tok::Arrow, "`->` after the preceding steps") {
+        if !self.expect(Tok::Arrow, say!("`->` after the preceding steps")) {
             self.recover(|p| p.at_chart_start() || p.var_kind().is_some());
             return;
         }
@@ -373,12 +385,12 @@ impl Parser<'_> {
             let at = self.behind();
             self.slip(
                 at,
-                "the succeeding steps are missing",
-                "a sink transition is written `1 -> () when …`",
+                say!("the succeeding steps are missing"),
+                say!("a sink transition is written `1 -> () when …`"),
             );
             Vec::new()
         } else {
-            self.step_list("the succeeding steps")
+            self.step_list(say!("the succeeding steps"))
         };
         let receptivity = self.receptivity(&from, &to);
         let at = Place::default();
@@ -403,12 +415,12 @@ impl Parser<'_> {
         if t.comment.is_none() && self.at(Tok::Comment) {
             t.comment = self.comment_if();
         } else if t.priority.is_none() && self.eat_word("priority") {
-            t.priority = Some(self.integer_u32("a number, 1 is first"));
+            t.priority = Some(self.integer_u32(say!("a number, 1 is first")));
         } else if t.on_clearing.is_none() && self.at_two_words("on", "clearing") {
             self.eat_word("on");
             self.eat_word("clearing");
             self.eat(Tok::Colon);
-            t.on_clearing = Some(self.block("`{` and the statements"));
+            t.on_clearing = Some(self.block(say!("`{{` and the statements")));
         } else {
             return false;
         }
@@ -423,39 +435,43 @@ impl Parser<'_> {
         }
         let same_line = !self.cur.newline;
         if same_line && (self.at_word("if") || self.at(Tok::Colon)) {
-            self.slip_to(self.here(), "a receptivity stands behind `when`", "when");
+            self.slip_to(self.here(), say!("a receptivity stands behind `when`"), "when");
             self.bump();
             return self.condition();
         }
         if same_line && self.at_expr() {
-            self.slip(self.here(), "`when` is missing before the receptivity", "write `1 -> 2 when …`");
+            self.slip(
+                self.here(),
+                say!("`when` is missing before the receptivity"),
+                say!("write `1 -> 2 when …`"),
+            );
             return self.condition();
         }
         let help = if self.at(Tok::Arrow) {
             let (a, b) = (shown(from), shown(to));
-            format!(
+            say!(
                 "a step cannot follow a step: write a transition `{a} -> {b} when …` between them; \
                  `when =1` is always true"
             )
         } else {
-            "`when =1` is always true".into()
+            say!("`when =1` is always true")
         };
-        self.expected_help("`when` and the receptivity", Some(&help));
+        self.expected_help(say!("`when` and the receptivity"), Some(help));
         Expr { kind: ExprKind::Bad, at: self.behind().into() }
     }
 
     /// `5`, `(3, 5)` or `()`.
-    fn step_list(&mut self, what: &str) -> Vec<Name> {
+    fn step_list(&mut self, what: Said) -> Vec<Name> {
         let open = self.here();
         let mut names = Vec::new();
         if self.eat(Tok::LParen) {
             while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
-                names.extend(self.step_name("the name of a step"));
+                names.extend(self.step_name(say!("the name of a step")));
                 if !self.eat(Tok::Comma) {
                     break;
                 }
             }
-            self.close(Tok::RParen, "`)` after the steps", open);
+            self.close(Tok::RParen, say!("`)` after the steps"), open);
             return names;
         }
         // Most lists hold one step, and charts may have many thousands, so no more room is
@@ -463,15 +479,15 @@ impl Parser<'_> {
         names.reserve_exact(1);
         names.extend(self.step_name(what));
         if self.at(Tok::Comma) {
-            self.slip(self.here(), "several steps stand in parentheses", "write `(1, 2)`");
+            self.slip(self.here(), say!("several steps stand in parentheses"), say!("write `(1, 2)`"));
             while self.eat(Tok::Comma) {
-                names.extend(self.step_name("the name of a step"));
+                names.extend(self.step_name(say!("the name of a step")));
             }
         }
         names
     }
 
-    fn step_name(&mut self, what: &str) -> Option<Name> {
+    fn step_name(&mut self, what: Said) -> Option<Name> {
         if self.at_word("step") && self.peek().kind != Tok::Arrow {
             self.slip(self.here(), STEP_IN_TRANSITION.0, STEP_IN_TRANSITION.1);
             self.bump();

@@ -7,7 +7,9 @@ use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
 use crate::words;
 use g7_iec::constant;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Fix, Literal, Name, Path, Problem, Span, UnaryOp, codes};
+use g7_model::{
+    Arg, BinaryOp, Expr, ExprKind, Fix, Literal, Name, Path, Problem, Said, Span, UnaryOp, codes, say,
+};
 
 /// The largest height of an expression's tree.
 const MOST_HIGH: u32 = 500;
@@ -35,7 +37,7 @@ impl Parser<'_> {
         if !self.at(Tok::Assign) {
             return left.expr;
         }
-        self.slip_to(self.here(), "`:=` assigns; a comparison is written `=`", "=");
+        self.slip_to(self.here(), say!("`:=` assigns; a comparison is written `=`"), "=");
         self.bump();
         let right = self.tree(1);
         self.join(BinaryOp::Eq, left, right).expr
@@ -79,9 +81,9 @@ impl Parser<'_> {
         let call = [no, yes].map(|of| self.text_at(of)).join(", ");
         let call = format!("SEL({}, {call})", self.text_at(condition.expr.at.0));
         self.lexer.problems.add(sign, || {
-            let help = format!("write `{call}`, or `IF … THEN … ELSE … END_IF` in a body");
-            Problem::new(&codes::EXPECTED, sign, "there is no `? :`").help(help).fix(Fix::likely(
-                format!("write `{call}`"),
+            let help = say!("write `{call}`, or `IF … THEN … ELSE … END_IF` in a body");
+            Problem::new(&codes::EXPECTED, sign, say!("there is no `? :`")).help(help).fix(Fix::likely(
+                say!("write `{call}`"),
                 at,
                 call,
             ))
@@ -132,7 +134,7 @@ impl Parser<'_> {
             Tok::Percent => ("%", "mod"),
             _ => return,
         };
-        self.slip_to(self.here(), &format!("`{sign}` is no operator here"), word);
+        self.slip_to(self.here(), say!("`{sign}` is no operator here"), word);
     }
 
     /// Builds `a op b`; a tree that becomes too high is cut.
@@ -149,8 +151,9 @@ impl Parser<'_> {
         }
         let place = Span { start: at.end, ..at };
         self.report(place, || {
-            let what = format!("this expression is more than {MOST_HIGH} operators deep");
-            Problem::new(&codes::TOO_DEEP, place, what).help("put parts of it in parentheses or in variables")
+            let what = say!("this expression is more than {MOST_HIGH} operators deep");
+            Problem::new(&codes::TOO_DEEP, place, what)
+                .help(say!("put parts of it in parentheses or in variables"))
         });
         Tree { expr: Expr { kind: ExprKind::Bad, at: at.into() }, height: 1 }
     }
@@ -211,8 +214,8 @@ impl Parser<'_> {
             Tok::Comment if self.is_text_value() => {
                 self.slip(
                     self.here(),
-                    "a text as a value stands in single quotes",
-                    "write `'…'`; a comment, in double quotes, is drawn",
+                    say!("a text as a value stands in single quotes"),
+                    say!("write `'…'`; a comment, in double quotes, is drawn"),
                 );
                 self.bump();
                 self.leaf(ExprKind::Bad, token.start)
@@ -229,8 +232,8 @@ impl Parser<'_> {
                 let name = self.direct_name(token);
                 self.leaf(ExprKind::Direct(name), token.start)
             }
-            Tok::LParen => self.grouped(Tok::RParen, "`)`"),
-            Tok::LBracket => self.grouped(Tok::RBracket, "`]`"),
+            Tok::LParen => self.grouped(Tok::RParen, say!("`)`")),
+            Tok::LBracket => self.grouped(Tok::RBracket, say!("`]`")),
             Tok::Eq => self.always_true(),
             Tok::Word => self.word_operand(),
             _ => self.no_operand(),
@@ -247,7 +250,7 @@ impl Parser<'_> {
     }
 
     fn no_operand(&mut self) -> Tree {
-        self.expected("an expression");
+        self.expected(say!("an expression"));
         self.no_tree()
     }
 
@@ -299,7 +302,7 @@ impl Parser<'_> {
     }
 
     /// `( … )` or `[ … ]`.
-    fn grouped(&mut self, close: Tok, sign: &str) -> Tree {
+    fn grouped(&mut self, close: Tok, sign: Said) -> Tree {
         let open = self.here();
         if !self.enter() {
             return self.leaf(ExprKind::Bad, open.start);
@@ -319,7 +322,10 @@ impl Parser<'_> {
             self.bump();
             return self.leaf(ExprKind::Literal(Literal::Bool(true)), start);
         }
-        self.expected_help("`1` after `=`", Some("`=1` is always true; a comparison has two sides"));
+        self.expected_help(
+            say!("`1` after `=`"),
+            Some(say!("`=1` is always true; a comparison has two sides")),
+        );
         self.leaf(ExprKind::Bad, start)
     }
 
@@ -335,7 +341,8 @@ impl Parser<'_> {
         let at = self.span_of(token);
         let digits = self.slice(token).trim_start_matches("0x").to_ascii_uppercase();
         self.lexer.problems.add(at, || {
-            let problem = Problem::new(&codes::BAD_NUMBER, at, "a hexadecimal number begins with `16#`");
+            let problem =
+                Problem::new(&codes::BAD_NUMBER, at, say!("a hexadecimal number begins with `16#`"));
             meant(problem, &format!("16#{digits}"))
         });
         self.leaf(ExprKind::Bad, token.start)
@@ -388,11 +395,11 @@ impl Parser<'_> {
         if !self.at(Tok::LParen) && (self.at_name() || self.at(Tok::Direct)) {
             let (word, sign) = if op == UnaryOp::Rise { ("rise", '↑') } else { ("fall", '↓') };
             let operand = self.slice(self.cur);
-            let help = format!("write `{word}({operand})` or `{sign}{operand}`");
+            let help = say!("write `{word}({operand})` or `{sign}{operand}`");
             let place = self.here();
             let fix = Fix::sure(help.clone(), Span { start, ..place }, format!("{word}({operand})"));
             self.report(place, || {
-                let what = format!("the operand of `{word}` stands in parentheses");
+                let what = say!("the operand of `{word}` stands in parentheses");
                 Problem::new(&codes::EXPECTED, place, what).help(help).fix(fix)
             });
             let inner = self.postfix();
@@ -400,10 +407,10 @@ impl Parser<'_> {
             return self.checked(ExprKind::Unary(op, Box::new(inner.expr)), at, inner.height + 1);
         }
         if !self.at(Tok::LParen) {
-            self.expected("`(`");
+            self.expected(say!("`(`"));
             return self.leaf(ExprKind::Bad, start);
         }
-        let inner = self.grouped(Tok::RParen, "`)`");
+        let inner = self.grouped(Tok::RParen, say!("`)`"));
         let at = self.since(start);
         self.checked(ExprKind::Unary(op, Box::new(inner.expr)), at, inner.height + 1)
     }
@@ -413,19 +420,19 @@ impl Parser<'_> {
         let start = self.bump().start;
         let open = self.here();
         if !self.at(Tok::LParen) || !self.enter() {
-            self.expected("`(`");
+            self.expected(say!("`(`"));
             return self.leaf(ExprKind::Bad, start);
         }
         self.bump();
         let t1 = self.tree(1);
-        if !self.expect(Tok::Comma, "`,` and the condition") {
+        if !self.expect(Tok::Comma, say!("`,` and the condition")) {
             self.leave();
-            self.close(Tok::RParen, "`)`", open);
+            self.close(Tok::RParen, say!("`)`"), open);
             return self.leaf(ExprKind::Bad, start);
         }
         let e = self.tree(1);
         let t2 = self.eat(Tok::Comma).then(|| self.tree(1));
-        self.close(Tok::RParen, "`)`", open);
+        self.close(Tok::RParen, say!("`)`"), open);
         self.leave();
         let height = t1.height.max(e.height).max(t2.as_ref().map_or(0, |t| t.height)) + 1;
         let t2 = t2.map(|t| Box::new(t.expr));
@@ -436,7 +443,7 @@ impl Parser<'_> {
 
     /// Reads `a.b.c`. The caller has checked that a name stands here.
     pub(super) fn path(&mut self) -> Path {
-        let mut names = vec![self.name("a name")];
+        let mut names = vec![self.name(say!("a name"))];
         while self.eat(Tok::PathDot) {
             names.push(self.member());
         }
@@ -449,7 +456,7 @@ impl Parser<'_> {
             let token = self.bump();
             return Name::new(self.slice(token), self.span_of(token));
         }
-        self.name("a name after the dot")
+        self.name(say!("a name after the dot"))
     }
 
     /// True if the `(` of a call stands here.
@@ -502,14 +509,18 @@ impl Parser<'_> {
             let is_path = matches!(value.expr.kind, ExprKind::Path(_) | ExprKind::Bad);
             if output && !is_path {
                 let at = value.expr.at.0;
-                self.slip(at, "the result of an output goes to a variable", "write the name of a variable");
+                self.slip(
+                    at,
+                    say!("the result of an output goes to a variable"),
+                    say!("write the name of a variable"),
+                );
             }
             args.push(Arg { name, output, value: value.expr });
             if !self.eat(Tok::Comma) {
                 break;
             }
         }
-        self.close(Tok::RParen, "`)`", open);
+        self.close(Tok::RParen, say!("`)`"), open);
         self.leave();
         (args, height)
     }

@@ -6,7 +6,7 @@ use crate::lexer::Tok;
 use crate::words;
 use g7_model::{
     Block, Document, Expr, ExprKind, Fix, Function, Item, Name, NamedAction, Path, Problem, Profile,
-    ProfileName, Section, Stmt, StmtKind, Switch, TargetPlc, codes,
+    ProfileName, Said, Section, Stmt, StmtKind, Switch, TargetPlc, codes, say,
 };
 
 impl Parser<'_> {
@@ -45,7 +45,7 @@ impl Parser<'_> {
             "scan" => {
                 let time = self.line(|p| {
                     p.bump();
-                    p.duration("a duration")
+                    p.duration(say!("a duration"))
                 });
                 Item::Cycle(time, self.since(start).into())
             }
@@ -86,18 +86,18 @@ impl Parser<'_> {
             return;
         }
         if self.at_chart_start() {
-            let help = "write it between the braces of a chart: `chart Main { … }`";
-            self.problem_help(&codes::EXPECTED, at, "steps and transitions stand in a chart", help);
+            let help = say!("write it between the braces of a chart: `chart Main {{ … }}`");
+            self.problem_help(&codes::EXPECTED, at, say!("steps and transitions stand in a chart"), help);
         } else if !word.is_empty() {
-            let what = format!("no item of a file begins with `{word}`");
+            let what = say!("no item of a file begins with `{word}`");
             self.problem_help(
                 &codes::UNKNOWN_WORD,
                 at,
-                &what,
-                "items are variables, charts, plants, tests, …",
+                what,
+                say!("items are variables, charts, plants, tests, …"),
             );
         } else {
-            self.unexpected("a variable, a chart or another item of a file", None);
+            self.unexpected(say!("a variable, a chart or another item of a file"), None);
         }
         if self.cur.start == start {
             self.bump();
@@ -118,8 +118,8 @@ impl Parser<'_> {
             _ => return false,
         };
         let at = self.here();
-        let what = format!("variables are declared one a line, without `{word}` and `END_VAR`");
-        self.problem_help(&codes::UNKNOWN_WORD, at, &what, &format!("write `{item} a : BOOL`"));
+        let what = say!("variables are declared one a line, without `{word}` and `END_VAR`");
+        self.problem_help(&codes::UNKNOWN_WORD, at, what, say!("write `{item} a : BOOL`"));
         while !self.at(Tok::End) && !self.word().eq_ignore_ascii_case("END_VAR") && !self.at_file_start() {
             self.bump();
         }
@@ -137,7 +137,7 @@ impl Parser<'_> {
             self.bump();
         } else {
             let names = ProfileName::ALL.map(ProfileName::name);
-            self.unknown(word, "a profile", &names);
+            self.unknown(word, say!("a profile"), &names);
         }
         let open = self.here();
         let mut switches = Vec::new();
@@ -151,25 +151,25 @@ impl Parser<'_> {
                     self.skip_semis();
                 }
             }
-            self.close(Tok::RBrace, "`}` after the switches", open);
+            self.close(Tok::RBrace, say!("`}}` after the switches"), open);
         }
         let at = self.since(start).into();
         Item::Profile(Profile { name: name.unwrap_or_default(), switches, at })
     }
 
     /// Reports an unknown word and suggests one from the list; the word is skipped.
-    pub(super) fn unknown(&mut self, word: &str, what: &str, list: &[&str]) {
+    pub(super) fn unknown(&mut self, word: &str, what: Said, list: &[&str]) {
         if word.is_empty() {
-            self.expected(&format!("{what}: {}", list.join(", ")));
+            self.expected(say!("{what}: {}", Said::foreign(list.join(", "))));
             return;
         }
         let at = self.here();
         let near = words::similar(word, list);
         self.report(at, || {
-            let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("`{word}` is not {what}"));
+            let problem = Problem::new(&codes::UNKNOWN_WORD, at, say!("`{word}` is not {what}"));
             match near {
                 Some(near) => problem.meant(near),
-                None => problem.help(format!("there are {}", list.join(", "))),
+                None => problem.help(say!("there are {}", Said::foreign(list.join(", ")))),
             }
         });
         self.bump();
@@ -179,7 +179,7 @@ impl Parser<'_> {
     fn switch(&mut self) -> Option<Switch> {
         let start = self.cur.start;
         if !self.at(Tok::Word) {
-            self.expected("a switch, such as `multi-token`");
+            self.expected(say!("a switch, such as `multi-token`"));
             self.bump();
             return None;
         }
@@ -191,20 +191,20 @@ impl Parser<'_> {
         let at = self.since(start);
         let text = self.text_at(at);
         if text == "bound" {
-            return Some(Switch::Bound(self.integer_u32("the largest number of passes in a scan")));
+            return Some(Switch::Bound(self.integer_u32(say!("the largest number of passes in a scan"))));
         }
         let found = SWITCHES.iter().find(|(name, _)| *name == text);
         if found.is_none() {
             let names = SWITCHES.map(|(name, _)| name);
             let near = words::similar(text, &names);
             self.lexer.problems.add(at, || {
-                let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no switch `{text}`"));
+                let problem = Problem::new(&codes::UNKNOWN_WORD, at, say!("there is no switch `{text}`"));
                 match near {
                     Some(near) => {
-                        let problem = problem.help(format!("did you mean `{near}`?"));
-                        problem.fix(Fix::sure(format!("write `{near}`"), at, near))
+                        let problem = problem.help(say!("did you mean `{near}`?"));
+                        problem.fix(Fix::sure(say!("write `{near}`"), at, near))
                     }
-                    None => problem.help(format!("there are {} and bound", names.join(", "))),
+                    None => problem.help(say!("there are {} and bound", Said::foreign(names.join(", ")))),
                 }
             });
         }
@@ -218,7 +218,7 @@ impl Parser<'_> {
         if found.is_some() {
             self.bump();
         } else {
-            self.unknown(word, "a PLC whose limits are known", &TargetPlc::ALL.map(TargetPlc::name));
+            self.unknown(word, say!("a PLC whose limits are known"), &TargetPlc::ALL.map(TargetPlc::name));
         }
         Item::Target(found.unwrap_or(TargetPlc::Tsx57), self.since(start).into())
     }
@@ -226,7 +226,7 @@ impl Parser<'_> {
     /// `action Pump { … }`.
     pub(super) fn named_action(&mut self) -> NamedAction {
         let start = self.bump().start;
-        let name = self.name("the name of the action");
+        let name = self.name(say!("the name of the action"));
         let comment = self.comment_if();
         let body = self.body();
         NamedAction { name, comment, body, at: self.since(start).into() }
@@ -237,11 +237,11 @@ impl Parser<'_> {
         let start = self.bump().start;
         if !self.eat_word("section") {
             self.expected_help(
-                "`section`",
-                Some("a transition is written `1 -> 2 when …`, without the word `transition`"),
+                say!("`section`"),
+                Some(say!("a transition is written `1 -> 2 when …`, without the word `transition`")),
             );
         }
-        let name = self.name("the name of the section");
+        let name = self.name(say!("the name of the section"));
         let from = self.cur.start;
         let short = self.at(Tok::Assign) || self.at(Tok::Eq);
         let body = if short {
@@ -249,17 +249,17 @@ impl Parser<'_> {
             let value = self.condition();
             short_section(&name, value, self.since(from).into())
         } else {
-            self.block("`{` or `:=`")
+            self.block(say!("`{{` or `:=`"))
         };
         Section { name, body, short, at: self.since(start).into() }
     }
 
     fn function(&mut self) -> Function {
         let start = self.bump().start;
-        let name = self.name("the name of the function");
+        let name = self.name(say!("the name of the function"));
         let params = self.params();
         let result = self.typed();
-        let body = self.block("`{` and the statements");
+        let body = self.block(say!("`{{` and the statements"));
         Function { name, params, result, body, at: self.since(start).into() }
     }
 }

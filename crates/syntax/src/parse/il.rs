@@ -3,7 +3,7 @@
 use super::Parser;
 use crate::lexer::Tok;
 use g7_iec::il::{Instruction, InstructionKind as Kind, Mnemonic, Operand, When, is_input, mnemonic};
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, UnaryOp, codes};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, Said, UnaryOp, codes, say};
 
 impl Parser<'_> {
     /// The instructions up to the end of the text.
@@ -40,7 +40,7 @@ impl Parser<'_> {
             return Some(Kind::Close);
         }
         if self.at_name() && self.peek().kind == Tok::Colon {
-            let name = self.name("a label");
+            let name = self.name(say!("a label"));
             self.bump();
             return Some(Kind::Label(name));
         }
@@ -57,7 +57,7 @@ impl Parser<'_> {
             return Some(Kind::Operate { op: BinaryOp::And, negated, operand: self.operands()? });
         }
         if !self.at(Tok::Word) && !self.at(Tok::Ticked) {
-            self.expected_help("an instruction", Some("for example `LD a`, `ANDN b` or `ST c`"));
+            self.expected_help(say!("an instruction"), Some(say!("for example `LD a`, `ANDN b` or `ST c`")));
             return None;
         }
         let word = self.slice(self.cur).to_ascii_uppercase();
@@ -76,7 +76,7 @@ impl Parser<'_> {
     }
 
     /// True if the operator has an operand on its line.
-    fn on_line(&mut self, what: &str) -> bool {
+    fn on_line(&mut self, what: Said) -> bool {
         let here = !self.cur.newline && !matches!(self.cur.kind, Tok::End | Tok::Semi);
         if !here {
             self.expected(what);
@@ -85,20 +85,20 @@ impl Parser<'_> {
     }
 
     fn label(&mut self) -> Option<Name> {
-        if !self.on_line("the name of a label") {
+        if !self.on_line(say!("the name of a label")) {
             return None;
         }
-        Some(self.name("the name of a label")).filter(|n| !n.text.is_empty())
+        Some(self.name(say!("the name of a label"))).filter(|n| !n.text.is_empty())
     }
 
     /// The operand of LD; in parentheses any expression of Structured Text.
     fn loaded(&mut self) -> Option<Expr> {
-        self.on_line("a value").then(|| self.signed(true))
+        self.on_line(say!("a value")).then(|| self.signed(true))
     }
 
     /// The operand of an operation: `(` opens a bracket.
     fn operands(&mut self) -> Option<Operand> {
-        if !self.on_line("a value or `(`") {
+        if !self.on_line(say!("a value or `(`")) {
             return None;
         }
         if self.eat(Tok::LParen) {
@@ -120,7 +120,7 @@ impl Parser<'_> {
             Tok::Rise => UnaryOp::Rise,
             Tok::Fall => UnaryOp::Fall,
             Tok::LParen if !brackets => {
-                self.expected("a value");
+                self.expected(say!("a value"));
                 return self.bad();
             }
             _ => return self.operand(),
@@ -132,7 +132,7 @@ impl Parser<'_> {
 
     /// The target of a store: a variable.
     fn stored(&mut self) -> Option<Expr> {
-        if !self.on_line("a variable") {
+        if !self.on_line(say!("a variable")) {
             return None;
         }
         let e = self.operand();
@@ -140,7 +140,7 @@ impl Parser<'_> {
             ExprKind::Path(_) | ExprKind::Direct(_) => Some(e),
             ExprKind::Bad => None,
             _ => {
-                self.problem(&codes::EXPECTED, e.at.0, "only a variable can be written");
+                self.problem(&codes::EXPECTED, e.at.0, say!("only a variable can be written"));
                 None
             }
         }
@@ -148,10 +148,10 @@ impl Parser<'_> {
 
     /// `CAL c(CU := x)`.
     fn block_call(&mut self, when: When) -> Option<Kind> {
-        if !self.on_line("the name of a function block") {
+        if !self.on_line(say!("the name of a function block")) {
             return None;
         }
-        let path = self.path_or_empty("the name of a function block");
+        let path = self.path_or_empty(say!("the name of a function block"));
         let args: Vec<Arg> = if self.at_call() { self.call_args() } else { Vec::new() };
         Some(Kind::Call(path, args, when))
     }
@@ -159,7 +159,7 @@ impl Parser<'_> {
     /// `MAX b`, `LIMIT b, c`, `CU C10`, or a call with all inputs by name.
     fn applied(&mut self, word: &str) -> Option<Kind> {
         let start = self.cur.start;
-        let name = self.name("an operator");
+        let name = self.name(say!("an operator"));
         if self.at_call() {
             let args = self.call_args();
             if args.iter().all(|a| a.name.is_some()) {

@@ -6,7 +6,9 @@
 use super::Parser;
 use crate::lexer::{Lexer, Tok, Token};
 use g7_iec::ld::{Coil, Element, Rung};
-use g7_model::{BinaryOp, Expr, ExprKind, FileId, Name, Problem, Span, Stmt, StmtKind, UnaryOp, codes};
+use g7_model::{
+    BinaryOp, Expr, ExprKind, FileId, Name, Problem, Said, Span, Stmt, StmtKind, UnaryOp, codes, say,
+};
 
 /// The deepest nesting of branches.
 const DEEPEST: usize = 60;
@@ -51,7 +53,7 @@ impl<'a> Reader<'a> {
         Span { file: self.file, start: clip(start), end: clip(self.pos.max(start)) }
     }
 
-    fn say(&mut self, at: Span, what: impl Into<String>) {
+    fn say(&mut self, at: Span, what: Said) {
         if self.problems.len() < 200 {
             self.problems.push(Problem::new(&codes::EXPECTED, at, what));
         }
@@ -101,7 +103,7 @@ impl<'a> Reader<'a> {
                 End::Line | End::Text => break,
                 // The rail at the beginning or the end of the line.
                 End::Bar => {}
-                End::Brace => self.say(self.span(before), "this `}` closes nothing"),
+                End::Brace => self.say(self.span(before), say!("this `}}` closes nothing")),
             }
         }
         Some(Rung { label, elements, at: self.span(start) })
@@ -165,7 +167,7 @@ impl<'a> Reader<'a> {
                     self.pos += c.len_utf8();
                     self.skip_unknown();
                     let at = self.span(start);
-                    self.say(at, "a contact `[a]`, a coil `(q)`, a block `<t(IN)>` or a branch `{ … | … }` stands here");
+                    self.say(at, say!("a contact `[a]`, a coil `(q)`, a block `<t(IN)>` or a branch `{{ … | … }}` stands here"));
                 }
             }
             joined = false;
@@ -215,7 +217,7 @@ impl<'a> Reader<'a> {
         let rest = self.rest();
         self.pos += rest.find('\n').unwrap_or(rest.len());
         let at = Span { end: u32::try_from(from).unwrap_or(u32::MAX), ..self.span(start) };
-        self.problems.push(Problem::new(&codes::UNCLOSED, at, format!("`{close}` is missing on this line")));
+        self.problems.push(Problem::new(&codes::UNCLOSED, at, say!("`{close}` is missing on this line")));
         None
     }
 
@@ -262,7 +264,7 @@ impl<'a> Reader<'a> {
         let coil = match word {
             Some("JMP") => {
                 parser.bump();
-                Coil::Jump(parser.name("a label"))
+                Coil::Jump(parser.name(say!("a label")))
             }
             Some("S" | "R" | "P" | "N") => {
                 parser.bump();
@@ -286,10 +288,10 @@ impl<'a> Reader<'a> {
         let (from, to) = self.inside('<', '>')?;
         let at = self.span(start);
         let mut parser = self.part(from, to);
-        let path = parser.path_or_empty("the name of a function block");
+        let path = parser.path_or_empty(say!("the name of a function block"));
         let args = if parser.at_call() { parser.call_args() } else { Vec::new() };
         let output = if parser.eat(Tok::PathDot) || parser.eat(Tok::Dot) {
-            Some(parser.name("the name of an output"))
+            Some(parser.name(say!("the name of an output")))
         } else {
             None
         };
@@ -302,7 +304,7 @@ impl<'a> Reader<'a> {
         self.pos += 1;
         if depth >= DEEPEST {
             let at = self.span(start);
-            let what = format!("branches are nested more than {DEEPEST} deep");
+            let what = say!("branches are nested more than {DEEPEST} deep");
             self.problems.push(Problem::new(&codes::TOO_DEEP, at, what));
             self.pos = self.text.len();
             return None;
@@ -320,7 +322,7 @@ impl<'a> Reader<'a> {
                     self.problems.push(Problem::new(
                         &codes::UNCLOSED,
                         at,
-                        "this branch is never closed with `}`",
+                        say!("this branch is never closed with `}}`"),
                     ));
                     break;
                 }
@@ -347,7 +349,7 @@ impl<'a> Parser<'a> {
             let kind = ExprKind::Direct(self.direct_name(token));
             return Expr { kind, at: self.since(start).into() };
         }
-        let path = self.path_or_empty("a variable");
+        let path = self.path_or_empty(say!("a variable"));
         Expr { kind: ExprKind::Path(path), at: self.since(start).into() }
     }
 

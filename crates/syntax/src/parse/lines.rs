@@ -8,7 +8,7 @@
 use super::Parser;
 use super::extent::Extent;
 use crate::lexer::{Tok, Token};
-use g7_model::{BinaryOp, Problem, Span, codes};
+use g7_model::{BinaryOp, Problem, Said, Span, codes, say};
 
 impl Parser<'_> {
     /// Reads a construct that stands on one line.
@@ -40,7 +40,7 @@ impl Parser<'_> {
                 let what = p.missing_operand(at);
                 p.report(at, || {
                     Problem::new(&codes::EXPECTED, at, what)
-                        .help("a statement that goes on in the next line ends with `;`")
+                        .help(say!("a statement that goes on in the next line ends with `;`"))
                 });
             }
             out
@@ -126,15 +126,17 @@ impl Parser<'_> {
         let what = self.missing_operand(at);
         let when = what.ends_with("`when`");
         let help = if when {
-            "a receptivity stands on the line of its `when`; `when =1` is always true"
+            say!("a receptivity stands on the line of its `when`; `when =1` is always true")
         } else {
-            "an expression goes on in the next line within brackets, or if that line begins with the operator"
+            say!(
+                "an expression goes on in the next line within brackets, or if that line begins with the operator"
+            )
         };
         self.report(at, || Problem::new(&codes::EXPECTED, at, what).help(help));
     }
 
     /// The words for an operand that is missing at the end of a line, by the word or sign before it.
-    fn missing_operand(&self, at: Span) -> String {
+    fn missing_operand(&self, at: Span) -> Said {
         let line = self.text.get(..at.start as usize).unwrap_or_default();
         let word = |c: char| c.is_alphanumeric() || c == '_';
         let last = if line.ends_with(word) {
@@ -143,9 +145,9 @@ impl Parser<'_> {
             line.rsplit(|c: char| word(c) || c.is_whitespace()).next().unwrap_or_default()
         };
         match last {
-            "" => "expected an expression".into(),
-            "when" => "expected the receptivity after `when`".into(),
-            _ => format!("expected an expression after `{last}`"),
+            "" => say!("expected an expression"),
+            "when" => say!("expected the receptivity after `when`"),
+            _ => say!("expected an expression after `{last}`"),
         }
     }
 }

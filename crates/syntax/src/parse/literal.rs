@@ -4,7 +4,7 @@ use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
 use crate::quote;
 use g7_iec::constant;
-use g7_model::{Expr, ExprKind, Literal, Nanos, Problem, codes};
+use g7_model::{Expr, ExprKind, Literal, Nanos, Problem, Said, codes, say};
 
 /// Values for text that could not be read. They are allowed everywhere, so that no later stage
 /// complains again.
@@ -19,7 +19,7 @@ impl Parser<'_> {
     pub(super) fn comment_if(&mut self) -> Option<Box<str>> {
         if self.at(Tok::Str) && !self.cur.newline {
             let text = self.slice(self.cur).trim_matches('\'').replace('"', "\\\"");
-            self.slip_to(self.here(), "a comment stands in double quotes", &format!("\"{text}\""));
+            self.slip_to(self.here(), say!("a comment stands in double quotes"), &format!("\"{text}\""));
             self.bump();
             return Some(text.into());
         }
@@ -67,7 +67,7 @@ impl Parser<'_> {
                     let problem = Problem::new(&codes::BAD_DURATION, at, what);
                     if name_like {
                         problem.help(
-                            "a duration is `5s` or `1h30m`; a name that begins with a digit stands in back-ticks",
+                            say!("a duration is `5s` or `1h30m`; a name that begins with a digit stands in back-ticks"),
                         )
                     } else {
                         problem
@@ -79,7 +79,7 @@ impl Parser<'_> {
     }
 
     /// A duration; without one a problem.
-    pub(super) fn duration(&mut self, what: &str) -> Nanos {
+    pub(super) fn duration(&mut self, what: Said) -> Nanos {
         if let Some(time) = self.duration_if() {
             return time;
         }
@@ -88,7 +88,7 @@ impl Parser<'_> {
         } else if matches!(self.cur.kind, Tok::Int | Tok::Real) {
             self.bare_time();
         } else {
-            self.expected_help(what, Some("for example `10ms`, `5s` or `1m30s`"));
+            self.expected_help(what, Some(say!("for example `10ms`, `5s` or `1m30s`")));
         }
         UNREAD_TIME
     }
@@ -115,13 +115,13 @@ impl Parser<'_> {
     pub(super) fn loose_time(&mut self) -> Expr {
         let number = self.bump();
         let unit = self.bump();
-        let text = format!("{}{}", self.slice(number), self.slice(unit));
+        let text = say!("{}{}", self.slice(number), self.slice(unit));
         let at = self.since(number.start);
         self.lexer.problems.add(at, || {
-            let what = "no blank stands between the number and the unit of a duration";
-            meant(Problem::new(&codes::BAD_DURATION, at, what), &text)
+            let what = say!("no blank stands between the number and the unit of a duration");
+            meant(Problem::new(&codes::BAD_DURATION, at, what), text)
         });
-        let time = constant::duration(&text).unwrap_or(UNREAD_TIME);
+        let time = constant::duration(text).unwrap_or(UNREAD_TIME);
         Expr { kind: ExprKind::Literal(Literal::Time(time)), at: at.into() }
     }
 
@@ -131,9 +131,8 @@ impl Parser<'_> {
         let at = self.span_of(number);
         let text = self.slice(number);
         self.lexer.problems.add(at, || {
-            Problem::new(&codes::BAD_DURATION, at, "the unit of this duration is missing").help(format!(
-                "write `{text}s` for seconds, `{text}ms` for milliseconds, `{text}m` for minutes"
-            ))
+            Problem::new(&codes::BAD_DURATION, at, say!("the unit of this duration is missing"))
+                .help(say!("write `{text}s` for seconds, `{text}ms` for milliseconds, `{text}m` for minutes"))
         });
         Expr { kind: ExprKind::Literal(Literal::Time(UNREAD_TIME)), at: at.into() }
     }
@@ -144,7 +143,7 @@ impl Parser<'_> {
             let token = self.bump();
             let at = self.span_of(token);
             let value = constant::integer(self.slice(token)).and_then(|v| {
-                u64::try_from(v).ok().filter(|v| *v <= most).ok_or_else(|| format!("at most {most} here"))
+                u64::try_from(v).ok().filter(|v| *v <= most).ok_or_else(|| say!("at most {most} here"))
             });
             value.unwrap_or_else(|what| {
                 self.lexer.problems.add(at, || Problem::new(&codes::BAD_NUMBER, at, what));
@@ -153,7 +152,7 @@ impl Parser<'_> {
         })
     }
 
-    pub(super) fn integer_u32(&mut self, what: &str) -> u32 {
+    pub(super) fn integer_u32(&mut self, what: Said) -> u32 {
         match self.integer_if(u64::from(u32::MAX)) {
             Some(n) => u32::try_from(n).unwrap_or(u32::MAX),
             None => {

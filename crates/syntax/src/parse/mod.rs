@@ -26,14 +26,14 @@ use crate::lexer::{Lexer, Tok, Token};
 use crate::quote;
 use crate::words;
 use g7_model::codes::{self, Code};
-use g7_model::{FileId, Fix, Name, Problem, Span, UnaryOp};
+use g7_model::{FileId, Fix, Name, Problem, Said, Span, UnaryOp, say};
 
 /// The deepest nesting of brackets, blocks and operands.
 const MOST_NESTED: u32 = 128;
 
 /// A problem at whose place this text was surely meant.
 fn meant(problem: Problem, text: &str) -> Problem {
-    let (at, help) = (problem.at, format!("write `{text}`"));
+    let (at, help) = (problem.at, say!("write `{text}`"));
     problem.help(help.clone()).fix(Fix::sure(help, at, text))
 }
 
@@ -175,11 +175,10 @@ impl<'a> Parser<'a> {
         );
         let Some(near) = words::similar(word, list).filter(|_| follows) else { return false };
         self.report(at, || {
-            let what = format!("`{word}` is no word of the language here");
-            let problem =
-                Problem::new(&codes::UNKNOWN_WORD, at, what).help(format!("did you mean `{near}`?"));
+            let what = say!("`{word}` is no word of the language here");
+            let problem = Problem::new(&codes::UNKNOWN_WORD, at, what).help(say!("did you mean `{near}`?"));
             // The rest of the text fits the word, and it is read as such.
-            problem.fix(Fix::sure(format!("write `{near}`"), at, near))
+            problem.fix(Fix::sure(say!("write `{near}`"), at, near))
         });
         self.corrected = Some((at.start, near));
         true
@@ -265,16 +264,16 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn problem(&mut self, code: &'static Code, at: Span, what: impl Into<String>) {
+    fn problem(&mut self, code: &'static Code, at: Span, what: Said) {
         self.report(at, || Problem::new(code, at, what));
     }
 
-    fn problem_help(&mut self, code: &'static Code, at: Span, what: &str, help: &str) {
+    fn problem_help(&mut self, code: &'static Code, at: Span, what: Said, help: Said) {
         self.report(at, || Problem::new(code, at, what).help(help));
     }
 
     /// Reports a slip whose meaning is clear; reading continues as if it were right.
-    fn slip(&mut self, at: Span, what: &str, help: impl Into<String>) {
+    fn slip(&mut self, at: Span, what: Said, help: Said) {
         if self.silent() {
             return;
         }
@@ -282,7 +281,7 @@ impl<'a> Parser<'a> {
     }
 
     /// Reports a slip for which this text was meant.
-    fn slip_to(&mut self, at: Span, what: &str, text: &str) {
+    fn slip_to(&mut self, at: Span, what: Said, text: &str) {
         if self.silent() {
             return;
         }
@@ -290,26 +289,26 @@ impl<'a> Parser<'a> {
     }
 
     /// The current token, in words.
-    fn found(&self) -> String {
+    fn found(&self) -> Said {
         match self.cur.kind {
-            Tok::End => "the end of the text".into(),
-            Tok::Comment => "a comment".into(),
-            Tok::Str => "a text in quotes".into(),
+            Tok::End => say!("the end of the text"),
+            Tok::Comment => say!("a comment"),
+            Tok::Str => say!("a text in quotes"),
             _ => {
                 let text = self.slice(self.cur);
                 let short: String = text.chars().take(24).collect();
                 let dots = if short.len() < text.len() { "…" } else { "" };
-                format!("`{short}{dots}`")
+                say!("`{short}{dots}`")
             }
         }
     }
 
     /// Reports that something else was expected at this token.
-    fn expected(&mut self, what: &str) {
+    fn expected(&mut self, what: Said) {
         self.expected_help(what, None);
     }
 
-    fn expected_help(&mut self, what: &str, help: Option<&str>) {
+    fn expected_help(&mut self, what: Said, help: Option<Said>) {
         if self.silent() {
             return;
         }
@@ -324,12 +323,12 @@ impl<'a> Parser<'a> {
     }
 
     /// Reports a token that cannot begin the expected text.
-    fn unexpected(&mut self, what: &str, help: Option<&str>) {
+    fn unexpected(&mut self, what: Said, help: Option<Said>) {
         if self.silent() {
             return;
         }
         let at = self.here();
-        let problem = Problem::new(&codes::EXPECTED, at, format!("expected {what}, found {}", self.found()));
+        let problem = Problem::new(&codes::EXPECTED, at, say!("expected {what}, found {}", self.found()));
         self.report(at, || match help {
             Some(help) => problem.help(help),
             None => problem,
@@ -337,16 +336,16 @@ impl<'a> Parser<'a> {
     }
 
     /// If the line ended before this token, the problem is placed at that end.
-    fn expected_words(&self, what: &str) -> (Span, String) {
+    fn expected_words(&self, what: Said) -> (Span, Said) {
         let ended = self.cur.newline && self.prev.kind != Tok::Bad || self.at(Tok::End);
         if ended {
-            (self.behind(), format!("expected {what}"))
+            (self.behind(), say!("expected {what}"))
         } else {
-            (self.here(), format!("expected {what}, found {}", self.found()))
+            (self.here(), say!("expected {what}, found {}", self.found()))
         }
     }
 
-    fn expect(&mut self, kind: Tok, what: &str) -> bool {
+    fn expect(&mut self, kind: Tok, what: Said) -> bool {
         let here = self.eat(kind);
         if !here {
             self.expected(what);
@@ -357,28 +356,28 @@ impl<'a> Parser<'a> {
     /// Reports any text that follows.
     pub(crate) fn expect_end(&mut self) {
         if !self.at(Tok::End) {
-            self.expected("nothing more");
+            self.expected(say!("nothing more"));
         }
     }
 
     /// Reports a closing bracket that belongs to no other.
     fn closes_nothing(&mut self) {
         let at = self.here();
-        let what = format!("this `{}` closes nothing", self.slice(self.cur));
-        let help = "delete it, or write the bracket that it closes";
-        self.problem_help(&codes::UNCLOSED, at, &what, help);
+        let what = say!("this `{}` closes nothing", self.slice(self.cur));
+        let help = say!("delete it, or write the bracket that it closes");
+        self.problem_help(&codes::UNCLOSED, at, what, help);
     }
 
     /// Expects the bracket that closes the one at `open`.
-    fn close(&mut self, kind: Tok, sign: &str, open: Span) -> bool {
+    fn close(&mut self, kind: Tok, sign: Said, open: Span) -> bool {
         let here = self.eat(kind);
         if !here && !self.silent() {
             let (at, words) = self.expected_words(sign);
             let open_sign = self.text_at(open);
             self.report(at, || {
                 Problem::new(&codes::UNCLOSED, at, words)
-                    .related(open, format!("`{open_sign}` stands here"))
-                    .help("each bracket that is opened has to be closed")
+                    .related(open, say!("`{open_sign}` stands here"))
+                    .help(say!("each bracket that is opened has to be closed"))
             });
         }
         if !here {
@@ -398,7 +397,7 @@ impl<'a> Parser<'a> {
         }
         let at = self.here();
         self.report(at, || {
-            let what = format!("brackets or blocks are nested more than {MOST_NESTED} levels deep");
+            let what = say!("brackets or blocks are nested more than {MOST_NESTED} levels deep");
             Problem::new(&codes::TOO_DEEP, at, what)
         });
         self.skip_nested();
@@ -460,7 +459,7 @@ impl<'a> Parser<'a> {
     // Names
 
     /// Reads a name; without one it reports a problem and returns an empty name.
-    fn name(&mut self, what: &str) -> Name {
+    fn name(&mut self, what: Said) -> Name {
         if let Some(name) = self.name_if() {
             return name;
         }
@@ -485,13 +484,13 @@ impl<'a> Parser<'a> {
         };
         self.bump();
         if name.text.is_empty() {
-            self.slip(at, "a name cannot be empty", "write something between the back-ticks");
+            self.slip(at, say!("a name cannot be empty"), say!("write something between the back-ticks"));
         }
         Some(name)
     }
 
     /// Reads a reserved word in the place of a name as that name, if a token follows that fits.
-    fn reserved_name(&mut self, what: &str) -> Name {
+    fn reserved_name(&mut self, what: Said) -> Name {
         let at = self.here();
         let word = self.slice(self.cur);
         let fits = matches!(
@@ -507,24 +506,24 @@ impl<'a> Parser<'a> {
         );
         let fits = fits || self.peek().newline;
         if !fits || self.cur.newline && self.prev.kind != Tok::Bad {
-            let help = format!("`{word}` is a word of the language; as a name it stands in back-ticks");
-            self.expected_help(what, Some(&help));
+            let help = say!("`{word}` is a word of the language; as a name it stands in back-ticks");
+            self.expected_help(what, Some(help));
             return Name::new("", at);
         }
         self.slip(
             at,
-            &format!("`{word}` is a word of the language, not a name"),
-            format!("write it in back-ticks: `` `{word}` ``"),
+            say!("`{word}` is a word of the language, not a name"),
+            say!("write it in back-ticks: `` `{word}` ``"),
         );
         self.bump();
         Name::new(word, at)
     }
 
     /// `a, b, c`.
-    fn names(&mut self, what: &str) -> Vec<Name> {
-        let mut names = vec![self.name(what)];
+    fn names(&mut self, what: Said) -> Vec<Name> {
+        let mut names = vec![self.name(what.clone())];
         while self.eat(Tok::Comma) {
-            names.push(self.name(what));
+            names.push(self.name(what.clone()));
         }
         names
     }

@@ -2,7 +2,9 @@
 
 use super::Parser;
 use crate::lexer::Tok;
-use g7_model::{Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Rate, StateVar, View, words};
+use g7_model::{
+    Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Rate, Said, StateVar, View, say, words,
+};
 
 impl Parser<'_> {
     /// `plant Name { … }`.
@@ -10,18 +12,18 @@ impl Parser<'_> {
         let start = self.cur.start;
         let (name, comment) = self.head(|p| {
             p.bump();
-            (p.name("the name of the plant"), p.comment_if())
+            (p.name(say!("the name of the plant")), p.comment_if())
         });
         let open = self.here();
         let mut items = Vec::new();
-        if self.expect(Tok::LBrace, "`{` and the parts of the plant") {
+        if self.expect(Tok::LBrace, say!("`{{` and the parts of the plant")) {
             loop {
                 self.skip_semis();
                 if self.eat(Tok::RBrace) {
                     break;
                 }
                 if self.at(Tok::End) || self.cur.newline && self.at_file_start() {
-                    self.close(Tok::RBrace, "`}` after the last item of the plant", open);
+                    self.close(Tok::RBrace, say!("`}}` after the last item of the plant"), open);
                     break;
                 }
                 let at = self.cur.start;
@@ -39,7 +41,7 @@ impl Parser<'_> {
 
     fn lost_plant_item(&mut self, start: u32) {
         self.unexpected(
-            "an item of a plant: const, state, rate, drive, on, each, parts, arrivals or view",
+            say!("an item of a plant: const, state, rate, drive, on, each, parts, arrivals or view"),
             None,
         );
         if self.cur.start == start {
@@ -58,12 +60,12 @@ impl Parser<'_> {
             "on" => {
                 self.bump();
                 let event = self.condition();
-                let block = self.block("`{` and what happens");
+                let block = self.block(say!("`{{` and what happens"));
                 PlantItem::On(event, block, self.since(start).into())
             }
             "each" => {
                 self.bump();
-                let block = self.block("`{` and what happens at every tick");
+                let block = self.block(say!("`{{` and what happens at every tick"));
                 PlantItem::Each(block, self.since(start).into())
             }
             "parts" => PlantItem::Parts(self.parts()),
@@ -75,12 +77,12 @@ impl Parser<'_> {
 
     fn plant_const(&mut self) -> PlantItem {
         let start = self.bump().start;
-        let names = self.names("the name of the constant");
+        let names = self.names(say!("the name of the constant"));
         let ty = self.typed();
         let value = match self.initial_value() {
             Some(value) => value,
             None => {
-                self.expected("`:=` and the value of the constant");
+                self.expected(say!("`:=` and the value of the constant"));
                 self.bad()
             }
         };
@@ -90,12 +92,12 @@ impl Parser<'_> {
 
     fn state(&mut self) -> StateVar {
         let start = self.bump().start;
-        let names = self.names("the name of the state");
+        let names = self.names(say!("the name of the state"));
         let ty = self.typed();
         let init = self.initial_value();
         let limits = self.eat_word("in").then(|| {
             let least = self.expr();
-            self.expect(Tok::DotDot, "`..` and the upper limit");
+            self.expect(Tok::DotDot, say!("`..` and the upper limit"));
             (least, self.expr())
         });
         let comment = self.comment_if();
@@ -103,7 +105,7 @@ impl Parser<'_> {
     }
 
     /// `name := e`, of a rate or a drive.
-    fn name_and_value(&mut self, what: &str) -> (Name, Expr) {
+    fn name_and_value(&mut self, what: Said) -> (Name, Expr) {
         let name = self.name(what);
         let value = if self.assign_sign() { self.expr() } else { self.bad() };
         (name, value)
@@ -111,25 +113,25 @@ impl Parser<'_> {
 
     fn rate(&mut self) -> Rate {
         let start = self.bump().start;
-        let (state, value) = self.name_and_value("the name of a state or of a track");
+        let (state, value) = self.name_and_value(say!("the name of a state or of a track"));
         let when = self.eat_word("when").then(|| self.condition());
         Rate { state, value, when, at: self.since(start).into() }
     }
 
     fn drive(&mut self) -> Drive {
         let start = self.bump().start;
-        let (input, value) = self.name_and_value("the name of an input");
+        let (input, value) = self.name_and_value(say!("the name of an input"));
         Drive { input, value, at: self.since(start).into() }
     }
 
     fn parts(&mut self) -> Parts {
         let start = self.bump().start;
-        let name = self.name("the name of the parts");
+        let name = self.name(say!("the name of the parts"));
         let attributes = self.params();
         if !self.eat_word("max") {
-            self.expected("`max` and how many parts there are at most");
+            self.expected(say!("`max` and how many parts there are at most"));
         }
-        let max = self.integer_u32("how many parts there are at most");
+        let max = self.integer_u32(say!("how many parts there are at most"));
         let length = self.eat_word("length").then(|| self.expr());
         let mut init = Vec::new();
         if self.eat(Tok::Assign) {
@@ -147,7 +149,7 @@ impl Parser<'_> {
     fn part(&mut self) -> Vec<Expr> {
         let open = self.here();
         let mut values = Vec::new();
-        if !self.expect(Tok::LParen, "`(` and the attributes of a part") {
+        if !self.expect(Tok::LParen, say!("`(` and the attributes of a part")) {
             return values;
         }
         while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
@@ -157,27 +159,27 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.close(Tok::RParen, "`)`", open);
+        self.close(Tok::RParen, say!("`)`"), open);
         values
     }
 
     fn arrivals(&mut self) -> Arrivals {
         let start = self.bump().start;
-        let name = self.name("the name of the arrivals");
+        let name = self.name(say!("the name of the arrivals"));
         if !self.eat_word("every") {
-            self.expected("`every` and the time between two arrivals");
+            self.expected(say!("`every` and the time between two arrivals"));
         }
         let least = self.expr();
         let most = self.eat(Tok::DotDot).then(|| self.expr());
         let when = self.eat_word("when").then(|| self.condition());
-        let body = self.block("`{` and what happens at an arrival");
+        let body = self.block(say!("`{{` and what happens at an arrival"));
         Arrivals { name, least, most, when, body, at: self.since(start).into() }
     }
 
     fn view(&mut self) -> View {
         let start = self.bump().start;
         let file = self.text_if().unwrap_or_else(|| {
-            self.expected("the name of a picture file in quotes");
+            self.expected(say!("the name of a picture file in quotes"));
             "".into()
         });
         let open = self.here();
@@ -190,18 +192,18 @@ impl Parser<'_> {
                 bindings.push(self.line(Parser::binding));
                 self.skip_semis();
             }
-            self.close(Tok::RBrace, "`}` after the bindings", open);
+            self.close(Tok::RBrace, say!("`}}` after the bindings"), open);
         }
         View { file, bindings, at: self.since(start).into() }
     }
 
     /// `element.attribute := e`.
     fn binding(&mut self) -> Binding {
-        let element = self.name("the name of an element");
+        let element = self.name(say!("the name of an element"));
         if !self.eat(Tok::PathDot) {
-            self.expected("`.` and an attribute of the element");
+            self.expected(say!("`.` and an attribute of the element"));
         }
-        let (attribute, value) = self.name_and_value("an attribute of the element");
+        let (attribute, value) = self.name_and_value(say!("an attribute of the element"));
         Binding { element, attribute, value }
     }
 }

@@ -6,8 +6,8 @@ use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Scenario, Span,
-    TestStmt, TestStmtKind, codes, words,
+    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Said, Scenario,
+    Span, TestStmt, TestStmtKind, codes, say, words,
 };
 
 impl Parser<'_> {
@@ -23,14 +23,14 @@ impl Parser<'_> {
     fn test_head(&mut self) -> (Box<str>, Option<Name>, Option<u64>) {
         self.bump();
         let title = self.text_if().unwrap_or_else(|| {
-            self.expected("the title of the test in double quotes");
+            self.expected(say!("the title of the test in double quotes"));
             "".into()
         });
         let plant = self.with_plant();
         let seed = if self.eat_word("seed") {
             let seed = self.integer_if(u64::MAX);
             if seed.is_none() {
-                self.expected("a whole number");
+                self.expected(say!("a whole number"));
             }
             seed
         } else {
@@ -43,7 +43,7 @@ impl Parser<'_> {
         let open = self.here();
         let mut list = Vec::new();
         if !self.at(Tok::LBrace) {
-            self.expected("`{` and what happens in the test");
+            self.expected(say!("`{{` and what happens in the test"));
             return list;
         }
         if !self.enter() {
@@ -56,7 +56,7 @@ impl Parser<'_> {
                 break;
             }
             if self.at(Tok::End) || self.cur.newline && self.at_file_start() {
-                self.close(Tok::RBrace, "`}` after the statements of the test", open);
+                self.close(Tok::RBrace, say!("`}}` after the statements of the test"), open);
                 break;
             }
             let start = self.cur.start;
@@ -75,13 +75,13 @@ impl Parser<'_> {
 
     fn lost_test_statement(&mut self, start: u32) {
         if self.at_name() && matches!(self.peek().kind, Tok::Assign | Tok::Eq) {
-            self.unexpected("a statement of a test", Some("inputs are moved by `set a := TRUE`"));
+            self.unexpected(say!("a statement of a test"), Some(say!("inputs are moved by `set a := TRUE`")));
         } else {
             let help = match self.word() {
-                "assert" | "check" | "verify" => "a condition is asked by `expect a`".into(),
-                _ => format!("there are {}", words::texts(words::TEST).join(", ")),
+                "assert" | "check" | "verify" => say!("a condition is asked by `expect a`"),
+                _ => say!("there are {}", Said::foreign(words::texts(words::TEST).join(", "))),
             };
-            self.unexpected("a statement of a test", Some(&help));
+            self.unexpected(say!("a statement of a test"), Some(help));
         }
         if self.cur.start == start {
             self.bump();
@@ -97,8 +97,8 @@ impl Parser<'_> {
             "set" => self.set(),
             "pulse" => {
                 self.bump();
-                let target = self.settable("the name of an input");
-                let time = self.eat_st(St::For).then(|| self.duration("a duration"));
+                let target = self.settable(say!("the name of an input"));
+                let time = self.eat_st(St::For).then(|| self.duration(say!("a duration")));
                 TestStmtKind::Pulse(target, time)
             }
             "wait" => self.wait(),
@@ -121,7 +121,7 @@ impl Parser<'_> {
             }
             "release" => {
                 self.bump();
-                TestStmtKind::Release(self.settable("the name of a variable"))
+                TestStmtKind::Release(self.settable(say!("the name of a variable")))
             }
             "restart" => {
                 self.bump();
@@ -129,7 +129,7 @@ impl Parser<'_> {
             }
             "repeat" => {
                 self.bump();
-                let n = self.integer_u32("how many times");
+                let n = self.integer_u32(say!("how many times"));
                 TestStmtKind::Repeat(n, self.test_block())
             }
             _ => return None,
@@ -137,7 +137,7 @@ impl Parser<'_> {
     }
 
     /// A name, or a direct name such as `%S21`.
-    fn settable(&mut self, what: &str) -> Expr {
+    fn settable(&mut self, what: Said) -> Expr {
         let start = self.cur.start;
         let kind = if self.at(Tok::Direct) {
             let token = self.bump();
@@ -149,7 +149,7 @@ impl Parser<'_> {
     }
 
     fn target_and_value(&mut self) -> (Expr, Expr) {
-        let target = self.settable("the name of a variable");
+        let target = self.settable(say!("the name of a variable"));
         let value = if self.assign_sign() { self.expr() } else { self.bad() };
         (target, value)
     }
@@ -166,14 +166,14 @@ impl Parser<'_> {
     fn wait(&mut self) -> TestStmtKind {
         self.bump();
         if self.st_word() == Some(St::For) {
-            self.slip(self.here(), "`wait` takes its duration alone", "leave out `for`");
+            self.slip(self.here(), say!("`wait` takes its duration alone"), say!("leave out `for`"));
             self.bump();
         }
         if !self.eat_st(St::Until) {
-            return TestStmtKind::Wait(self.duration("a duration or `until`"));
+            return TestStmtKind::Wait(self.duration(say!("a duration or `until`")));
         }
         let e = self.condition();
-        let within = self.eat_word("within").then(|| self.duration("a duration"));
+        let within = self.eat_word("within").then(|| self.duration(say!("a duration")));
         TestStmtKind::WaitUntil(e, within)
     }
 
@@ -222,7 +222,7 @@ impl Parser<'_> {
             _ if self.at_expr() && !self.is_before_condition() => self.leads_to(),
             _ => {
                 let forms = ["always", "never", "reachable", "after", "between", "at most"];
-                self.unknown(word, "a form of property", &forms);
+                self.unknown(word, say!("a form of property"), &forms);
                 PropertyKind::Always(if self.at_expr() { self.condition() } else { self.bad() })
             }
         };
@@ -233,7 +233,7 @@ impl Parser<'_> {
 
     /// `with Tank`.
     fn with_plant(&mut self) -> Option<Name> {
-        self.eat_word("with").then(|| self.name("the name of a plant"))
+        self.eat_word("with").then(|| self.name(say!("the name of a plant")))
     }
 
     /// `assume e`.
@@ -264,7 +264,7 @@ impl Parser<'_> {
         if self.at_expr() {
             return self.condition();
         }
-        self.expected("a condition");
+        self.expected(say!("a condition"));
         self.bad()
     }
 
@@ -272,7 +272,7 @@ impl Parser<'_> {
     fn leads_to(&mut self) -> PropertyKind {
         let cause = self.condition();
         if !(self.eat_word("leads") && self.eat_word("to")) {
-            self.expected("`leads to` and a condition");
+            self.expected(say!("`leads to` and a condition"));
         }
         PropertyKind::LeadsTo(cause, self.claim())
     }
@@ -282,11 +282,11 @@ impl Parser<'_> {
         self.bump();
         let first = self.operand_above(BinaryOp::And);
         if !self.eat_word("and") {
-            self.expected("`and` and a condition");
+            self.expected(say!("`and` and a condition"));
         }
         let second = self.claim();
         if !self.eat_word("never") {
-            self.expected("`never` and a condition");
+            self.expected(say!("`never` and a condition"));
         }
         PropertyKind::Between(first, second, self.claim())
     }
@@ -295,15 +295,15 @@ impl Parser<'_> {
     fn at_most(&mut self) -> PropertyKind {
         self.bump();
         self.bump();
-        let count = self.integer_u32("how many may hold at once");
+        let count = self.integer_u32(say!("how many may hold at once"));
         if !self.eat_word("of") {
-            self.expected("`of` and conditions in parentheses");
+            self.expected(say!("`of` and conditions in parentheses"));
         }
         let open = self.here();
         let mut list = Vec::new();
-        if self.expect(Tok::LParen, "`(` and conditions") {
+        if self.expect(Tok::LParen, say!("`(` and conditions")) {
             list = self.conditions();
-            self.close(Tok::RParen, "`)` after the conditions", open);
+            self.close(Tok::RParen, say!("`)` after the conditions"), open);
         }
         PropertyKind::AtMost(count, list)
     }
@@ -315,16 +315,16 @@ impl Parser<'_> {
         if self.eat_st(St::Until) {
             let end = self.claim();
             if !self.eat_word("expect") {
-                self.expected("`expect` and a condition");
+                self.expected(say!("`expect` and a condition"));
             }
             return PropertyKind::Until(first, end, self.claim());
         }
         if !self.eat_word("within") {
-            self.expected("`within` and a duration, or `until` and a condition");
+            self.expected(say!("`within` and a duration, or `until` and a condition"));
         }
-        let time = self.duration("a duration");
+        let time = self.duration(say!("a duration"));
         if !self.eat_word("expect") {
-            self.expected("`expect` and a condition");
+            self.expected(say!("`expect` and a condition"));
         }
         PropertyKind::After(first, time, self.claim())
     }
@@ -334,11 +334,11 @@ impl Parser<'_> {
         let start = self.cur.start;
         let chart = self.head(|p| {
             p.bump();
-            p.name("the name of a chart")
+            p.name(say!("the name of a chart"))
         });
         let open = self.here();
         let mut places = Vec::new();
-        if self.expect(Tok::LBrace, "`{` and the places") {
+        if self.expect(Tok::LBrace, say!("`{{` and the places")) {
             self.places(&mut places, open);
         }
         Layout { chart, places, at: self.since(start).into() }
@@ -356,7 +356,7 @@ impl Parser<'_> {
                 None => break,
             }
         }
-        self.close(Tok::RBrace, "`}` after the places", open);
+        self.close(Tok::RBrace, say!("`}}` after the places"), open);
     }
 
     fn place_at(&mut self) -> Option<PlaceAt> {
@@ -364,15 +364,17 @@ impl Parser<'_> {
         let what = match self.word() {
             "step" => {
                 self.bump();
-                Placed::Step(self.name("the name of a step"))
+                Placed::Step(self.name(say!("the name of a step")))
             }
             "transition" => {
                 self.bump();
                 if self.eat(Tok::Hash) {
-                    Placed::TransitionNumber(self.integer_u32("the transition's place in the text, from 0"))
+                    Placed::TransitionNumber(
+                        self.integer_u32(say!("the transition's place in the text, from 0")),
+                    )
                 } else {
                     Placed::Transition(
-                        self.name("the label of a transition, or `#` and its place in the text"),
+                        self.name(say!("the label of a transition, or `#` and its place in the text")),
                     )
                 }
             }
@@ -380,21 +382,21 @@ impl Parser<'_> {
                 self.bump();
                 let text = self.text_if();
                 if text.is_none() {
-                    self.expected("the text of the comment in double quotes");
+                    self.expected(say!("the text of the comment in double quotes"));
                 }
                 Placed::Comment(text.unwrap_or_default())
             }
             _ => return None,
         };
         if !self.eat_word("at") {
-            self.expected("`at` and a place such as `(0, 1.5)`");
+            self.expected(say!("`at` and a place such as `(0, 1.5)`"));
         }
         let open = self.here();
-        self.expect(Tok::LParen, "`(`");
+        self.expect(Tok::LParen, say!("`(`"));
         let x = self.hundredths();
-        self.expect(Tok::Comma, "`,`");
+        self.expect(Tok::Comma, say!("`,`"));
         let y = self.hundredths();
-        self.close(Tok::RParen, "`)`", open);
+        self.close(Tok::RParen, say!("`)`"), open);
         Some(PlaceAt { what, x, y, at: self.since(start).into() })
     }
 
@@ -402,7 +404,7 @@ impl Parser<'_> {
     fn hundredths(&mut self) -> i32 {
         let negative = self.eat(Tok::Minus);
         if !matches!(self.cur.kind, Tok::Int | Tok::Real) {
-            self.expected("a number");
+            self.expected(say!("a number"));
             return 0;
         }
         let token = self.bump();
@@ -411,7 +413,11 @@ impl Parser<'_> {
         let value = value.map(|v| (v * 100.0).round()).filter(|v| *v <= f64::from(i32::MAX));
         let Some(value) = value else {
             self.lexer.problems.add(at, || {
-                Problem::new(&codes::BAD_NUMBER, at, "a place is a decimal number of at most 21474836.47")
+                Problem::new(
+                    &codes::BAD_NUMBER,
+                    at,
+                    say!("a place is a decimal number of at most 21474836.47"),
+                )
             });
             return 0;
         };

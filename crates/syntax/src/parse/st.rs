@@ -5,12 +5,13 @@ use crate::lexer::Tok;
 use crate::words::{self, St};
 use crate::{il, ladder};
 use g7_model::{
-    Block, Body, BodyLang, CaseArm, Expr, ExprKind, Local, Path, Problem, Span, Stmt, StmtKind, Work, codes,
+    Block, Body, BodyLang, CaseArm, Expr, ExprKind, Local, Path, Problem, Said, Span, Stmt, StmtKind, Work,
+    codes, say,
 };
 
 impl Parser<'_> {
     /// Reads `{ … }`; without a brace it reports a problem and returns an empty block.
-    pub(super) fn block(&mut self, what: &str) -> Block {
+    pub(super) fn block(&mut self, what: Said) -> Block {
         let open = self.here();
         if !self.at(Tok::LBrace) {
             self.expected(what);
@@ -22,7 +23,7 @@ impl Parser<'_> {
         self.bump();
         let locals = self.locals();
         let statements = self.statements(false);
-        self.close(Tok::RBrace, "`}` after the statements", open);
+        self.close(Tok::RBrace, say!("`}}` after the statements"), open);
         self.leave();
         Block { locals, statements, at: self.since(open.start).into() }
     }
@@ -39,7 +40,7 @@ impl Parser<'_> {
 
     fn local(&mut self) -> Local {
         let start = self.bump().start;
-        let names = self.names("the name of a variable");
+        let names = self.names(say!("the name of a variable"));
         let ty = self.typed();
         let init = self.initial_value();
         Local { names, ty, init, at: self.since(start).into() }
@@ -55,11 +56,11 @@ impl Parser<'_> {
         };
         let Some(lang) = lang else {
             self.eat_word("st");
-            return Body::St(self.block("`{` and the statements"));
+            return Body::St(self.block(say!("`{{` and the statements")));
         };
         self.bump();
         if !self.at(Tok::LBrace) || self.next.is_some() {
-            self.expected("`{`");
+            self.expected(say!("`{{`"));
             let at = self.since(start).into();
             return Body::Other(lang, "".into(), Block { at, ..Block::default() });
         }
@@ -69,7 +70,7 @@ impl Parser<'_> {
         let statements = self.other_body(lang, from, from + raw.len());
         let text = if raw.contains('\r') { raw.replace("\r\n", "\n").into() } else { raw.into() };
         self.bump();
-        self.close(Tok::RBrace, "`}`", open);
+        self.close(Tok::RBrace, say!("`}}`"), open);
         let at = self.since(start).into();
         Body::Other(lang, text, Block { locals: Vec::new(), statements, at })
     }
@@ -90,13 +91,13 @@ impl Parser<'_> {
     /// An assignment, a call or a block, as in an action.
     pub(super) fn work(&mut self) -> Work {
         if self.at(Tok::LBrace) {
-            return Work::Block(self.block("`{`"));
+            return Work::Block(self.block(say!("`{{`")));
         }
         let start = self.cur.start;
         let kind = match self.simple_statement() {
             Some(kind) => kind,
             None => {
-                self.expected("an assignment, a call or `{`");
+                self.expected(say!("an assignment, a call or `{{`"));
                 StmtKind::Assign { target: self.bad(), value: self.bad() }
             }
         };
@@ -148,7 +149,7 @@ impl Parser<'_> {
             return;
         };
         let at = if two { Span { end: next.end, ..at } } else { at };
-        let what = format!("`{}` is no word of Structured Text", self.text_at(at));
+        let what = say!("`{}` is no word of Structured Text", self.text_at(at));
         self.report(at, || meant(Problem::new(&codes::UNKNOWN_WORD, at, what), near));
         if two {
             self.bump();
@@ -179,7 +180,7 @@ impl Parser<'_> {
     }
 
     fn lost_statement(&mut self, start: u32) {
-        self.unexpected("a statement", None);
+        self.unexpected(say!("a statement"), None);
         if self.cur.start == start {
             self.bump();
         }
@@ -222,23 +223,23 @@ impl Parser<'_> {
     fn then_word(&mut self, word: St, text: &str) {
         if !self.eat_st(word) {
             self.expected_help(
-                &format!("`{text}`"),
-                Some("blocks have words and no braces: `IF a THEN … END_IF`"),
+                say!("`{text}`"),
+                Some(say!("blocks have words and no braces: `IF a THEN … END_IF`")),
             );
         }
     }
 
     fn end_word(&mut self, word: St, text: &str, open: g7_model::Span) {
         if !self.eat_st(word) {
-            let (at, words) = self.expected_words(&format!("`{text}`"));
+            let (at, words) = self.expected_words(say!("`{text}`"));
             self.report(at, || {
                 let help = if word == St::EndIf {
-                    "each IF has an END_IF of its own; `ELSE IF` begins another one, `ELSIF` does not".into()
+                    say!("each IF has an END_IF of its own; `ELSE IF` begins another one, `ELSIF` does not")
                 } else {
-                    format!("write `{text}` behind its statements")
+                    say!("write `{text}` behind its statements")
                 };
                 Problem::new(&codes::UNCLOSED, at, words)
-                    .related(open, "the statement begins here")
+                    .related(open, say!("the statement begins here"))
                     .help(help)
             });
         }
@@ -307,7 +308,7 @@ impl Parser<'_> {
                 break;
             }
         }
-        self.expect(Tok::Colon, "`:` after the values");
+        self.expect(Tok::Colon, say!("`:` after the values"));
         CaseArm { labels, body: self.statements(true) }
     }
 
@@ -344,7 +345,7 @@ impl Parser<'_> {
     fn for_statement(&mut self) -> StmtKind {
         let open = self.here();
         self.bump();
-        let var = self.name("the loop's variable");
+        let var = self.name(say!("the loop's variable"));
         self.assign_sign();
         let from = self.expr();
         self.then_word(St::To, "TO");
@@ -373,7 +374,7 @@ impl Parser<'_> {
         let condition = if self.eat_st(St::Until) {
             self.condition()
         } else {
-            self.expected("`UNTIL` and a condition");
+            self.expected(say!("`UNTIL` and a condition"));
             self.bad()
         };
         self.end_word(St::EndRepeat, "END_REPEAT", open);
@@ -383,11 +384,11 @@ impl Parser<'_> {
     /// `:=`, or `=` with a problem.
     pub(super) fn assign_sign(&mut self) -> bool {
         if self.at(Tok::Eq) {
-            self.slip_to(self.here(), "`=` compares; an assignment is written `:=`", ":=");
+            self.slip_to(self.here(), say!("`=` compares; an assignment is written `:=`"), ":=");
             self.bump();
             return true;
         }
-        self.expect(Tok::Assign, "`:=`")
+        self.expect(Tok::Assign, say!("`:=`"))
     }
 
     /// An assignment or a call, if a target stands here.
@@ -416,8 +417,8 @@ impl Parser<'_> {
         {
             let sign = self.slice(self.cur);
             let name = if let ExprKind::Path(p) = &target.kind { p.text() } else { "n".into() };
-            let help = format!("write `{name} := {name} {sign} 1`");
-            self.expected_help("`:=`", Some(&help));
+            let help = say!("write `{name} := {name} {sign} 1`");
+            self.expected_help(say!("`:=`"), Some(help));
             self.bump();
             self.bump();
             let value = if self.at_expr() && !self.cur.newline { self.expr() } else { self.bad() };
@@ -428,7 +429,7 @@ impl Parser<'_> {
     }
 
     /// The path of an expression that must be one.
-    pub(super) fn path_or_empty(&mut self, what: &str) -> Path {
+    pub(super) fn path_or_empty(&mut self, what: Said) -> Path {
         if self.at_name() {
             return self.path();
         }

@@ -4,7 +4,7 @@ use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
 use crate::words;
 use g7_iec::constant;
-use g7_model::{Expr, Name, Param, Problem, Type, VarDecl, VarKind, codes};
+use g7_model::{Expr, Name, Param, Problem, Said, Type, VarDecl, VarKind, codes, say};
 
 impl Parser<'_> {
     /// The kind of variable that is declared here, if one is.
@@ -21,7 +21,7 @@ impl Parser<'_> {
     /// Reads a declaration; its first word is the current token.
     pub(super) fn variable(&mut self, kind: VarKind) -> VarDecl {
         let start = self.bump().start;
-        let names = self.names("the name of a variable");
+        let names = self.names(say!("the name of a variable"));
         let ty = self.typed();
         let at = self.since(start).into();
         let mut decl = VarDecl {
@@ -37,7 +37,7 @@ impl Parser<'_> {
             at,
         };
         if kind == VarKind::Const && decl.init.is_none() {
-            self.expected("`:=` and the value of the constant");
+            self.expected(say!("`:=` and the value of the constant"));
         }
         while self.clause(&mut decl) {}
         decl.at = self.since(start).into();
@@ -59,13 +59,15 @@ impl Parser<'_> {
         self.pass_line_end();
         let at = self.here();
         let (fits, where_to) = match word {
-            "at" => (decl.kind != VarKind::Const, "`input`, `output` or `var`"),
-            "inverted" => (matches!(decl.kind, VarKind::Input | VarKind::Output), "`input` or `output`"),
-            "retain" => (decl.kind == VarKind::Var, "`var`"),
-            _ => (decl.kind == VarKind::Output, "`output`"),
+            "at" => (decl.kind != VarKind::Const, say!("`input`, `output` or `var`")),
+            "inverted" => {
+                (matches!(decl.kind, VarKind::Input | VarKind::Output), say!("`input` or `output`"))
+            }
+            "retain" => (decl.kind == VarKind::Var, say!("`var`")),
+            _ => (decl.kind == VarKind::Output, say!("`output`")),
         };
         if !fits {
-            let what = format!("`{word}` belongs to {where_to}");
+            let what = say!("`{word}` belongs to {where_to}");
             self.lexer.problems.add(at, || Problem::new(&codes::EXPECTED, at, what));
         }
         self.bump();
@@ -101,10 +103,10 @@ impl Parser<'_> {
             }
             let at = self.since(start);
             let text = self.text_at(at);
-            self.slip_to(at, "a direct address begins with `%`", &format!("%{text}"));
+            self.slip_to(at, say!("a direct address begins with `%`"), &format!("%{text}"));
         }
         if name.is_none() {
-            self.expected("an address such as `%I0.0`, or the name of a channel");
+            self.expected(say!("an address such as `%I0.0`, or the name of a channel"));
         }
         name
     }
@@ -115,10 +117,10 @@ impl Parser<'_> {
             return self.ty();
         }
         if self.at(Tok::Word) && !self.cur.newline && self.known_type().is_some() {
-            self.slip(self.here(), "`:` is missing before the type", "write `name : type`");
+            self.slip(self.here(), say!("`:` is missing before the type"), say!("write `name : type`"));
             return self.ty();
         }
-        self.expected_help("`:` and a type", Some("for example `a : BOOL`"));
+        self.expected_help(say!("`:` and a type"), Some(say!("for example `a : BOOL`")));
         Type::Bool
     }
 
@@ -145,7 +147,7 @@ impl Parser<'_> {
             self.bump();
             let at = self.since(whole.start);
             let text = format!("{}.{}", self.slice(whole), self.slice(part));
-            self.slip_to(at, "a number has a decimal point", &text);
+            self.slip_to(at, say!("a number has a decimal point"), &text);
         }
     }
 
@@ -165,11 +167,12 @@ impl Parser<'_> {
             return ty;
         }
         let open = self.here();
-        let (close, sign) = if self.at(Tok::LParen) { (Tok::RParen, "`)`") } else { (Tok::RBracket, "`]`") };
+        let (close, sign) =
+            if self.at(Tok::LParen) { (Tok::RParen, say!("`)`")) } else { (Tok::RBracket, say!("`]`")) };
         self.bump();
         let length = self.integer_if(u64::from(u16::MAX));
         if length.is_none() {
-            self.expected("the number of bytes of the text");
+            self.expected(say!("the number of bytes of the text"));
         }
         self.close(close, sign, open);
         Type::String(length.and_then(|n| u16::try_from(n).ok()).unwrap_or(80))
@@ -177,7 +180,7 @@ impl Parser<'_> {
 
     fn unknown_type(&mut self) {
         if !self.at(Tok::Word) || words::is_reserved(self.word()) {
-            self.expected_help("a type", Some("for example BOOL, INT, REAL, TIME or TON"));
+            self.expected_help(say!("a type"), Some(say!("for example BOOL, INT, REAL, TIME or TON")));
             return;
         }
         let word = self.word();
@@ -195,20 +198,20 @@ impl Parser<'_> {
             _ => None,
         };
         self.report(at, || {
-            let problem = Problem::new(&codes::UNKNOWN_WORD, at, format!("there is no type `{word}`"));
+            let problem = Problem::new(&codes::UNKNOWN_WORD, at, say!("there is no type `{word}`"));
             if let Some(other) = other {
                 return meant(problem, other.name());
             }
             problem.help(match (&*upper, words::similar(word, &names)) {
                 ("BYTE" | "WORD" | "DWORD" | "LWORD", _) => {
-                    "there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits".into()
+                    say!("there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits")
                 }
-                ("ARRAY" | "STRUCT", _) => "declare one variable for each element".into(),
+                ("ARRAY" | "STRUCT", _) => say!("declare one variable for each element"),
                 ("DATE" | "TOD" | "DT" | "TIME_OF_DAY" | "DATE_AND_TIME" | "LTIME", _) => {
-                    "the only type of times is TIME".into()
+                    say!("the only type of times is TIME")
                 }
-                (_, Some(near)) => format!("did you mean `{near}`?"),
-                _ => format!("there are {}", names.join(", ")),
+                (_, Some(near)) => say!("did you mean `{near}`?"),
+                _ => say!("there are {}", Said::foreign(names.join(", "))),
             })
         });
         self.bump();
@@ -224,19 +227,19 @@ impl Parser<'_> {
     pub(super) fn params(&mut self) -> Vec<Param> {
         let open = self.here();
         let mut params = Vec::new();
-        if !self.expect(Tok::LParen, "`(`") {
+        if !self.expect(Tok::LParen, say!("`(`")) {
             return params;
         }
         while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
             let start = self.cur.start;
-            let name = self.name("the name of a parameter");
+            let name = self.name(say!("the name of a parameter"));
             let ty = self.typed();
             params.push(Param { name, ty });
             if !self.eat(Tok::Comma) && !self.eat(Tok::Semi) || self.cur.start == start {
                 break;
             }
         }
-        self.close(Tok::RParen, "`)`", open);
+        self.close(Tok::RParen, say!("`)`"), open);
         params
     }
 }

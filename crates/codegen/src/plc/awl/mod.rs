@@ -43,7 +43,7 @@ pub(super) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Prob
     let (out, variables, mut cannot) = p.values.done();
     let head = declarations(e, &variables, &mut cannot);
     if !cannot.is_empty() {
-        let problem = |what| Problem::new(&codes::NOT_CARRIED, place, what);
+        let problem = |what| Problem::new(&codes::NOT_CARRIED, place, g7_model::Said::foreign(what));
         return Err(cannot.into_iter().map(problem).collect());
     }
     let body = if out.is_empty() { "      NOP 0;\n".to_owned() } else { out };

@@ -21,7 +21,11 @@ impl Refused {
         if self.0.is_empty() {
             return Ok(());
         }
-        Err(self.0.into_iter().map(|what| Problem::new(&codes::NOT_CARRIED, place, what)).collect())
+        Err(self
+            .0
+            .into_iter()
+            .map(|what| Problem::new(&codes::NOT_CARRIED, place, g7_model::Said::foreign(what)))
+            .collect())
     }
 }
 

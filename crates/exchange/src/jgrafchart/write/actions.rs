@@ -2,6 +2,7 @@
 
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Order, Place, Qualifier, Stmt, StmtKind, Target, Type, VarKind, Work,
+    say,
 };
 
 use super::Writer;
@@ -27,15 +28,15 @@ impl Writer<'_> {
                 self.qualified(step, *qualifier, target, condition.as_ref(), at, lines);
             }
             ActionKind::Qualified { qualifier, .. } => {
-                self.cannot(at, &format!("the qualifier {}", qualifier.name()));
+                self.cannot(at, say!("the qualifier {}", qualifier));
             }
             ActionKind::EachScan { work, condition } => {
                 self.work(step.0, &["P"], work, condition.as_ref(), at, lines);
             }
-            ActionKind::OnEvent { .. } => self.cannot(at, "an action on an event"),
+            ActionKind::OnEvent { .. } => self.cannot(at, say!("an action on an event")),
             ActionKind::Order(Order::Enclose(_)) => {}
-            ActionKind::Order(_) => self.cannot(at, "an order of a step"),
-            ActionKind::Comment(_) => self.leave_out(at, "a comment among the actions"),
+            ActionKind::Order(_) => self.cannot(at, say!("an order of a step")),
+            ActionKind::Comment(_) => self.leave_out(at, say!("a comment among the actions")),
         }
     }
 
@@ -56,17 +57,17 @@ impl Writer<'_> {
                 self.work(chart, letters, work, condition, at, lines);
             }
             (_, Target::Work(_)) => {
-                self.cannot(at, &format!("statements with the qualifier {}", qualifier.name()));
+                self.cannot(at, say!("statements with the qualifier {}", qualifier));
             }
             (Qualifier::N | Qualifier::S | Qualifier::R, _) => {
                 let Some((var, ty)) = self.written(chart, target, at) else { return };
                 if ty != Type::Bool {
-                    self.cannot(at, "an action on what is no Boolean variable");
+                    self.cannot(at, say!("an action on what is no Boolean variable"));
                     return;
                 }
                 if qualifier == Qualifier::N {
                     match condition {
-                        Some(c) => self.cannot(c.at, "a condition of a continuous action"),
+                        Some(c) => self.cannot(c.at, say!("a condition of a continuous action")),
                         None => {
                             let name = self.name(chart, var, at);
                             lines.extend(name.map(|n| format!("N {n};")));
@@ -77,7 +78,7 @@ impl Writer<'_> {
                 let value = u8::from(qualifier == Qualifier::S).to_string();
                 self.assign(chart, &["S"], var, value, condition, at, lines);
             }
-            _ => self.cannot(at, &format!("the qualifier {}", qualifier.name())),
+            _ => self.cannot(at, say!("the qualifier {}", qualifier)),
         }
     }
 
@@ -107,19 +108,19 @@ impl Writer<'_> {
         lines: &mut Vec<String>,
     ) {
         if matches!(work, Work::Block(b) if !b.locals.is_empty()) {
-            self.cannot(at, "variables of a body");
+            self.cannot(at, say!("variables of a body"));
             return;
         }
         for statement in work.statements() {
             let Stmt { kind: StmtKind::Assign { target, value }, at } = statement else {
-                self.cannot(statement.at, "a statement that is no assignment");
+                self.cannot(statement.at, say!("a statement that is no assignment"));
                 continue;
             };
             let target = match &target.kind {
                 ExprKind::Path(path) => Target::Path(path.clone()),
                 ExprKind::Direct(address) => Target::Direct(address.clone(), target.at),
                 _ => {
-                    self.cannot(*at, "an assignment to what is no variable");
+                    self.cannot(*at, say!("an assignment to what is no variable"));
                     continue;
                 }
             };
@@ -127,7 +128,7 @@ impl Writer<'_> {
             let home = chart;
             match (Speech { look: &mut self.look, chart, home }).value(value, ty) {
                 Ok(value) => self.assign(chart, letters, var, value, condition, *at, lines),
-                Err((at, what)) => self.cannot(at, &what),
+                Err((at, what)) => self.cannot(at, what),
             }
         }
     }
@@ -149,7 +150,7 @@ impl Writer<'_> {
             // If the condition is false, the variable keeps its value.
             Some(c) => match (Speech { look: &mut self.look, chart, home: chart }).condition(c) {
                 Ok(condition) => format!("({condition}) ? ({value}) : {name}"),
-                Err((at, what)) => return self.cannot(at, &what),
+                Err((at, what)) => return self.cannot(at, what),
             },
         };
         lines.extend(letters.iter().map(|letter| format!("{letter} {name} = {value};")));
@@ -169,7 +170,7 @@ impl Writer<'_> {
         match found {
             Some((var, decl)) if decl.kind != VarKind::Const => Some((var, decl.ty)),
             _ => {
-                self.cannot(at, "an action on what is no variable");
+                self.cannot(at, say!("an action on what is no variable"));
                 None
             }
         }
@@ -178,7 +179,7 @@ impl Writer<'_> {
     fn name(&mut self, chart: usize, var: VarId, at: Place) -> Option<String> {
         let name = self.look.speak(chart, Thing::Var(var));
         if name.is_none() {
-            self.cannot(at, "a name that means something else where it is used");
+            self.cannot(at, say!("a name that means something else where it is used"));
         }
         name
     }

@@ -1,6 +1,6 @@
 //! Writes a chart as the content of a workspace: steps, transitions, bars and lines.
 
-use g7_model::{Chart, ChartItem, Name, Nanos, Step, StepKind, Transition};
+use g7_model::{Chart, ChartItem, Name, Nanos, Step, StepKind, Transition, say};
 
 use super::Writer;
 use super::guards::{Shown, encloses};
@@ -70,12 +70,16 @@ impl<'d> Writer<'d> {
         };
         if !is_name(&chart.name.text) {
             // No text can name its content, but nothing else is wrong.
-            self.say(&g7_model::codes::DIFFERENT, chart.name.at, "texts of JGrafchart cannot hold this name");
+            self.say(
+                &g7_model::codes::DIFFERENT,
+                chart.name.at,
+                say!("texts of JGrafchart cannot hold this name"),
+            );
         }
         let every = chart.every.unwrap_or(self.scan);
         let cycle = every.count().checked_div(self.scan.count()).unwrap_or(1).max(1);
         if every.whole(self.scan.max(Nanos::new(1))).is_none() {
-            self.cannot(chart.at, "a period that is no multiple of the scan time");
+            self.cannot(chart.at, say!("a period that is no multiple of the scan time"));
         }
         let nth = self.order.len();
         let inside = self.inner(index);
@@ -108,13 +112,13 @@ impl<'d> Writer<'d> {
             None => chart.every,
         };
         if chart.every.is_some_and(|every| every != self.scan) && chart.every != period {
-            self.cannot(chart.at, "a period of such a chart");
+            self.cannot(chart.at, say!("a period of such a chart"));
         }
         for item in &chart.items {
             match item {
-                ChartItem::Action(a) => self.cannot(a.at, "a named action"),
-                ChartItem::Section(s) => self.cannot(s.at, "a transition section"),
-                ChartItem::Post(_, at) => self.cannot(*at, "processing behind the evolution"),
+                ChartItem::Action(a) => self.cannot(a.at, say!("a named action")),
+                ChartItem::Section(s) => self.cannot(s.at, say!("a transition section")),
+                ChartItem::Post(_, at) => self.cannot(*at, say!("processing behind the evolution")),
                 ChartItem::Var(_) | ChartItem::Step(_) | ChartItem::Transition(_) | ChartItem::Pre(..) => {}
             }
         }
@@ -138,7 +142,7 @@ impl<'d> Writer<'d> {
                 continue;
             }
             if step.comment.is_some() {
-                self.leave_out(step.at, "the comment of a step");
+                self.leave_out(step.at, say!("the comment of a step"));
             }
             let tag = match sort {
                 Sort::Initial => "GCInitialStep",
@@ -176,7 +180,7 @@ impl<'d> Writer<'d> {
         let name = self.look.charts.get(inside).map(|c| &c.name);
         let Some(name) = name.filter(|n| n.text != step.name.text).cloned() else { return };
         if *name.text != format!("{}_{}", chart.name.text, step.name.text) {
-            let what = format!("`{}` is called as its macro-step there: `{}`", name.text, step.name.text);
+            let what = say!("`{}` is called as its macro-step there: `{}`", name.text, step.name.text);
             self.say(&g7_model::codes::RENAMED, name.at, what);
         }
     }
@@ -185,20 +189,23 @@ impl<'d> Writer<'d> {
         let inside = self.look.inside_of((index, number));
         let nested = self.look.owner.get(index).copied().flatten().is_some();
         if step.initial && (nested || step.kind != StepKind::Plain) {
-            self.cannot(step.at, "an initial macro-step, enclosing step or step in a macro-step");
+            self.cannot(step.at, say!("an initial macro-step, enclosing step or step in a macro-step"));
         }
         match &step.kind {
             StepKind::Macro(_) => match inside {
                 Some(inside) if self.depth(inside) < MOST_NESTED => Sort::Macro(inside),
                 _ => {
-                    self.cannot(step.at, "a second macro-step with this expansion, or one nested so deep");
+                    self.cannot(
+                        step.at,
+                        say!("a second macro-step with this expansion, or one nested so deep"),
+                    );
                     Sort::Plain
                 }
             },
             StepKind::Enclosing => match inside.filter(|_| encloses(step).is_some()) {
                 Some(inside) if self.depth(inside) < MOST_NESTED => Sort::Macro(inside),
                 _ => {
-                    self.cannot(step.at, "an enclosing step");
+                    self.cannot(step.at, say!("an enclosing step"));
                     Sort::Plain
                 }
             },
@@ -237,23 +244,26 @@ impl<'d> Writer<'d> {
         (parts, links): (&mut Vec<Element>, &mut Vec<Element>),
     ) {
         if transition.label.is_some() {
-            self.leave_out(transition.at, "the label of a transition");
+            self.leave_out(transition.at, say!("the label of a transition"));
         }
         if transition.comment.is_some() {
-            self.leave_out(transition.at, "the comment of a transition");
+            self.leave_out(transition.at, say!("the comment of a transition"));
         }
         if let Some(block) = &transition.on_clearing {
-            self.cannot(block.at, "an action on clearing");
+            self.cannot(block.at, say!("an action on clearing"));
         }
         let shown = self.guards.shown(index, number).cloned().unwrap_or_else(|| {
-            self.cannot(transition.at, "a transition of such an enclosing step, or of what it encloses");
+            self.cannot(
+                transition.at,
+                say!("a transition of such an enclosing step, or of what it encloses"),
+            );
             let condition = transition.receptivity.clone();
             Shown { exception: false, exits: std::collections::BTreeMap::new(), condition }
         });
         let condition =
             (Speech { look: &mut self.look, chart: index, home: index }).condition(&shown.condition);
         let condition = condition.unwrap_or_else(|(at, what)| {
-            self.cannot(at, &what);
+            self.cannot(at, what);
             "0".to_string()
         });
         let tag = if shown.exception { "ExceptionTransition" } else { "GCTransition" };

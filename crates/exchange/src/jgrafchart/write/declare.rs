@@ -1,7 +1,7 @@
 //! Writes variables, inputs and outputs as elements.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Type, UnaryOp, VarDecl, VarKind};
+use g7_model::{Expr, ExprKind, Literal, Type, UnaryOp, VarDecl, VarKind, say};
 
 use super::Writer;
 use super::lookup::VarId;
@@ -41,10 +41,10 @@ impl Writer<'_> {
     fn variable(&mut self, var: VarId, decl: &VarDecl, at: Spot) -> Option<Element> {
         let name = self.look.var_name(var).to_string();
         if decl.comment.is_some() {
-            self.leave_out(decl.at, "a comment");
+            self.leave_out(decl.at, say!("a comment"));
         }
         if decl.safe.is_some() {
-            self.leave_out(decl.at, "a value after a fault");
+            self.leave_out(decl.at, say!("a value after a fault"));
         }
         let element = match decl.kind {
             VarKind::Input | VarKind::Output => self.channel(decl)?,
@@ -75,7 +75,7 @@ impl Writer<'_> {
                 }
             }
             (ty, _) => {
-                self.cannot(decl.at, &format!("an input or output of the type {ty}"));
+                self.cannot(decl.at, say!("an input or output of the type {ty}"));
                 return None;
             }
         };
@@ -84,10 +84,10 @@ impl Writer<'_> {
         let rests = tag == "DigitalOut1";
         let zero = decl.init.as_ref().is_none_or(is_zero);
         if !(if rests { starts } else { zero }) {
-            self.cannot(decl.at, "such an initial value of an input or output");
+            self.cannot(decl.at, say!("such an initial value of an input or output"));
         }
         if decl.inverted && decl.ty != Type::Bool {
-            self.cannot(decl.at, "an inverted channel of a number");
+            self.cannot(decl.at, say!("an inverted channel of a number"));
         }
         let address = decl.address.as_ref().map_or("", |a| &*a.text);
         let value = match decl.ty {
@@ -113,26 +113,26 @@ impl Writer<'_> {
             Type::String(_) => ("StringVariable", ""),
             ty if whole(ty) => ("IntegerVariable", "0"),
             ty => {
-                self.cannot(decl.at, &format!("a variable of the type {ty}"));
+                self.cannot(decl.at, say!("a variable of the type {ty}"));
                 return None;
             }
         };
         self.narrow(decl);
         if decl.address.is_some() {
-            self.leave_out(decl.at, "the address of a variable");
+            self.leave_out(decl.at, say!("the address of a variable"));
         }
         let value = match &decl.init {
             None => zero.to_string(),
             Some(e) => match constant(e) {
                 Some(value) => value,
                 None => {
-                    self.cannot(e.at, "an initial value that is worked out");
+                    self.cannot(e.at, say!("an initial value that is worked out"));
                     zero.to_string()
                 }
             },
         };
         if decl.retain && self.follows.contains_key(&var) {
-            self.leave_out(decl.at, "`retain` of a variable that follows an expression");
+            self.leave_out(decl.at, say!("`retain` of a variable that follows an expression"));
         }
         let kept = decl.retain && decl.kind == VarKind::Var;
         let follows = self.follows.get(&var);
@@ -144,7 +144,11 @@ impl Writer<'_> {
             .with("value", &value);
         if matches!(decl.ty, Type::String(_)) && !kept && value.is_empty() && decl.kind == VarKind::Var {
             // An empty initial value means that the last value is kept.
-            self.say(&codes::DIFFERENT, decl.at, "a text that begins empty is kept over a restart there");
+            self.say(
+                &codes::DIFFERENT,
+                decl.at,
+                say!("a text that begins empty is kept over a restart there"),
+            );
         }
         Some(element)
     }
@@ -152,12 +156,12 @@ impl Writer<'_> {
     /// Reports types that become wider or narrower.
     fn narrow(&mut self, decl: &VarDecl) {
         let to = match decl.ty {
-            Type::Sint | Type::Int | Type::Usint | Type::Uint => "DINT",
-            Type::Real if matches!(decl.kind, VarKind::Var | VarKind::Const) => "LREAL",
-            Type::String(n) if n != STRING_BYTES => "a text of any length",
+            Type::Sint | Type::Int | Type::Usint | Type::Uint => say!("DINT"),
+            Type::Real if matches!(decl.kind, VarKind::Var | VarKind::Const) => say!("LREAL"),
+            Type::String(n) if n != STRING_BYTES => say!("a text of any length"),
             _ => return,
         };
-        self.say(&codes::DIFFERENT, decl.at, format!("a variable of the type {} becomes {to}", decl.ty));
+        self.say(&codes::DIFFERENT, decl.at, say!("a variable of the type {} becomes {to}", decl.ty));
     }
 }
 

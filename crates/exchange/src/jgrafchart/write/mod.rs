@@ -16,8 +16,8 @@ use std::collections::HashMap;
 
 use g7_model::codes::{self, Code};
 use g7_model::{
-    Body, ChartItem, ChartKind, Document, ExprKind, Item, Nanos, Place, Problem, ProfileName, Stmt, StmtKind,
-    VarKind,
+    Body, ChartItem, ChartKind, Document, ExprKind, Item, Nanos, Place, Problem, ProfileName, Said, Stmt,
+    StmtKind, VarKind, say,
 };
 
 use crate::Written;
@@ -101,18 +101,18 @@ impl<'d> Writer<'d> {
         }
     }
 
-    fn say(&mut self, code: &'static Code, at: Place, what: impl Into<String>) {
+    fn say(&mut self, code: &'static Code, at: Place, what: Said) {
         self.problems.push(Problem::new(code, at.0, what));
     }
 
     /// Reports an element with a meaning that JGrafchart does not have.
-    fn cannot(&mut self, at: Place, what: &str) {
-        self.say(&codes::NOT_CARRIED, at, format!("{what}: JGrafchart has none"));
+    fn cannot(&mut self, at: Place, what: Said) {
+        self.say(&codes::NOT_CARRIED, at, say!("{what}: JGrafchart has none"));
     }
 
     /// Reports an element without which the chart means the same.
-    fn leave_out(&mut self, at: Place, what: &str) {
-        self.say(&codes::LEFT_OUT, at, format!("{what}: JGrafchart has none; it is left out"));
+    fn leave_out(&mut self, at: Place, what: Said) {
+        self.say(&codes::LEFT_OUT, at, say!("{what}: JGrafchart has none; it is left out"));
     }
 
     /// A new identifier, in the style of newer files.
@@ -124,7 +124,7 @@ impl<'d> Writer<'d> {
     fn root(&mut self) -> Element {
         let document = self.document;
         for note in &document.notes {
-            self.leave_out(note.at.into(), "a note to the reader");
+            self.leave_out(note.at.into(), say!("a note to the reader"));
         }
         document.items.iter().for_each(|i| self.item(i));
         self.processing();
@@ -145,9 +145,9 @@ impl<'d> Writer<'d> {
             let alone = index != top && self.look.owner.get(index) == Some(&None);
             match chart.kind {
                 ChartKind::Chart if alone => objects.push(self.object(index)),
-                ChartKind::Task => self.cannot(chart.at, "a task"),
+                ChartKind::Task => self.cannot(chart.at, say!("a task")),
                 ChartKind::Expansion if alone => {
-                    self.leave_out(chart.at, "an expansion without a macro-step");
+                    self.leave_out(chart.at, say!("an expansion without a macro-step"));
                 }
                 _ => {}
             }
@@ -163,24 +163,24 @@ impl<'d> Writer<'d> {
             Item::Var(_) | Item::Chart(_) | Item::Layout(_) | Item::Pre(..) => {}
             Item::Profile(p) if p.name == ProfileName::Jgrafchart && p.switches.is_empty() => {}
             Item::Profile(p) => {
-                let what = format!(
+                let what = say!(
                     "the rules of evolution of `{}` or its switches; JGrafchart has its own",
                     p.name.name()
                 );
                 self.say(&codes::NOT_CARRIED, p.at, what);
             }
             Item::Cycle(time, at) if time.whole(Nanos::MILLISECOND).is_none_or(|ms| ms < 1) => {
-                self.cannot(*at, "a scan time that is no whole number of milliseconds");
+                self.cannot(*at, say!("a scan time that is no whole number of milliseconds"));
             }
             Item::Cycle(..) => {}
-            Item::Target(_, at) => self.leave_out(*at, "a target"),
-            Item::Action(a) => self.cannot(a.at, "a named action"),
-            Item::Section(s) => self.cannot(s.at, "a transition section"),
-            Item::Function(f) => self.cannot(f.at, "a function"),
-            Item::Post(_, at) => self.cannot(*at, "processing behind the evolution"),
-            Item::Plant(p) => self.leave_out(p.at, "a plant"),
-            Item::Test(t) => self.leave_out(t.at, "a test"),
-            Item::Prove(p) => self.leave_out(p.at, "a property"),
+            Item::Target(_, at) => self.leave_out(*at, say!("a target")),
+            Item::Action(a) => self.cannot(a.at, say!("a named action")),
+            Item::Section(s) => self.cannot(s.at, say!("a transition section")),
+            Item::Function(f) => self.cannot(f.at, say!("a function")),
+            Item::Post(_, at) => self.cannot(*at, say!("processing behind the evolution")),
+            Item::Plant(p) => self.leave_out(p.at, say!("a plant")),
+            Item::Test(t) => self.leave_out(t.at, say!("a test")),
+            Item::Prove(p) => self.leave_out(p.at, say!("a property")),
         }
     }
 
@@ -189,7 +189,7 @@ impl<'d> Writer<'d> {
         let document = self.document;
         let top = self.look.top;
         if !document.items.iter().any(|i| matches!(i, Item::Profile(_))) {
-            let what = "the rules of evolution of `iec60848`; JGrafchart has its own";
+            let what = say!("the rules of evolution of `iec60848`; JGrafchart has its own");
             self.say(&codes::NOT_CARRIED, Place::default(), what);
         }
         for item in &document.items {
@@ -208,14 +208,14 @@ impl<'d> Writer<'d> {
 
     fn before(&mut self, chart: usize, body: &Body, at: Place) {
         let Body::St(block) = body else {
-            return self.cannot(at, "processing before the evolution in another language");
+            return self.cannot(at, say!("processing before the evolution in another language"));
         };
         if !block.locals.is_empty() {
-            self.cannot(at, "variables of a body");
+            self.cannot(at, say!("variables of a body"));
         }
         for statement in &block.statements {
             if !self.follow(chart, statement) {
-                let what = "processing before the evolution other than one assignment to a variable";
+                let what = say!("processing before the evolution other than one assignment to a variable");
                 self.cannot(statement.at, what);
             }
         }
@@ -237,7 +237,7 @@ impl<'d> Writer<'d> {
             Ok(text) => {
                 self.follows.insert(var, text);
             }
-            Err((at, what)) => self.cannot(at, &what),
+            Err((at, what)) => self.cannot(at, what),
         }
         true
     }
@@ -249,7 +249,7 @@ impl<'d> Writer<'d> {
             if last.is_some_and(|l| l > index)
                 && let Some(chart) = self.look.charts.get(index)
             {
-                let what = format!(
+                let what = say!(
                     "`{}` comes behind charts that stand before it; transitions fire in the order of the file",
                     chart.name.text
                 );
@@ -270,7 +270,7 @@ impl<'d> Writer<'d> {
             };
             if let Some(old) = old {
                 let what =
-                    format!("texts of JGrafchart cannot hold the name `{}`; it becomes `{new}`", old.text);
+                    say!("texts of JGrafchart cannot hold the name `{}`; it becomes `{new}`", old.text);
                 self.say(&codes::RENAMED, old.at, what);
             }
         }

@@ -4,7 +4,7 @@
 //! silently; in a document each conversion is written out. A conversion is therefore left to the
 //! context if the context makes it, and refused if the context would make another one.
 
-use g7_model::{BinaryOp, Expr, ExprKind, Literal, Place, Type, UnaryOp};
+use g7_model::{BinaryOp, Expr, ExprKind, Literal, Place, Said, Type, UnaryOp, say};
 
 use super::lookup::{Look, Meaning, Property, Thing};
 use crate::jgrafchart::express::Sort;
@@ -22,7 +22,7 @@ const SIGN: Strength = 7;
 const ATOM: Strength = 8;
 
 /// The part that an expression cannot say, and its place.
-pub(super) type Refused = (Place, String);
+pub(super) type Refused = (Place, Said);
 
 /// Prints the expressions of a chart.
 pub(super) struct Speech<'a, 'd> {
@@ -50,28 +50,28 @@ impl Speech<'_, '_> {
     }
 
     fn form(&mut self, e: &Expr, wanted: Sort) -> Result<(String, Strength), Refused> {
-        let no = |what: &str| Err((e.at, what.to_string()));
+        let no = |what: Said| Err((e.at, what));
         match &e.kind {
             ExprKind::Literal(l) => literal(l, e.at),
             ExprKind::Path(path) => match self.look.path(self.chart, path) {
                 Some(meaning) => Ok((self.name(meaning, e.at)?, ATOM)),
-                None => Err((e.at, format!("what `{}` stands for", path.text()))),
+                None => Err((e.at, say!("what `{}` stands for", path.text()))),
             },
             ExprKind::Direct(address) => match self.look.direct(address) {
                 Some(meaning) => Ok((self.name(meaning, e.at)?, ATOM)),
-                None => Err((e.at, format!("`%{address}`"))),
+                None => Err((e.at, say!("`%{address}`"))),
             },
             ExprKind::Unary(op, inner) => self.unary(*op, inner, e.at, wanted),
             ExprKind::Binary(op, a, b) => self.binary(*op, (a, b), e.at, wanted),
-            ExprKind::Timer { .. } => no("a time operator"),
+            ExprKind::Timer { .. } => no(say!("a time operator")),
             ExprKind::Call(path, args) => {
                 let values: Vec<&Expr> = args.iter().map(|a| &a.value).collect();
                 if args.iter().any(|a| a.name.is_some()) {
-                    return no("a call with names for its inputs");
+                    return no(say!("a call with names for its inputs"));
                 }
                 self.call(&path.text().to_uppercase(), &values, e.at, wanted)
             }
-            ExprKind::Bad => no("what could not be read"),
+            ExprKind::Bad => no(say!("what could not be read")),
         }
     }
 
@@ -84,7 +84,7 @@ impl Speech<'_, '_> {
         };
         match self.look.speak(self.home, thing) {
             Some(name) => Ok(format!("{name}{end}")),
-            None => Err((at, "a name that means something else where it is used".to_string())),
+            None => Err((at, say!("a name that means something else where it is used"))),
         }
     }
 
@@ -106,7 +106,7 @@ impl Speech<'_, '_> {
         };
         let named = matches!(inner.kind, ExprKind::Path(_) | ExprKind::Direct(_));
         if op != UnaryOp::Not && !named {
-            return Err((at, "an edge of what is no variable".to_string()));
+            return Err((at, say!("an edge of what is no variable")));
         }
         Ok((format!("{sign}{}", self.say(inner, Sort::Bool, SIGN)?), SIGN))
     }
@@ -153,7 +153,7 @@ impl Speech<'_, '_> {
                 let own = self.sort(a).max(self.sort(b)).unwrap_or(Sort::Int);
                 let made = self.made(a).max(self.made(b)).unwrap_or(Sort::Int);
                 if made == Sort::Int && wanted == Sort::Real && op == BinaryOp::Div {
-                    return Err((at, "a division of whole numbers among real ones".to_string()));
+                    return Err((at, say!("a division of whole numbers among real ones")));
                 }
                 let sort = if wanted == Sort::Real { Sort::Real } else { own };
                 match op {
@@ -164,7 +164,7 @@ impl Speech<'_, '_> {
                 }
             }
             BinaryOp::Mod => logic(self, "%", PRODUCT, Sort::Int),
-            BinaryOp::Pow => Err((at, "a power".to_string())),
+            BinaryOp::Pow => Err((at, say!("a power"))),
         }
     }
 
@@ -186,8 +186,8 @@ impl Speech<'_, '_> {
     fn common(&self, a: &Expr, b: &Expr, at: Place) -> Result<Sort, Refused> {
         let sort = self.sort(a).max(self.sort(b)).unwrap_or(Sort::Int);
         if self.made(a).max(self.made(b)).is_some_and(|made| made != sort) {
-            let what = "a comparison of numbers that are converted otherwise there";
-            return Err((at, what.to_string()));
+            let what = say!("a comparison of numbers that are converted otherwise there");
+            return Err((at, what));
         }
         Ok(sort)
     }
@@ -199,7 +199,7 @@ impl Speech<'_, '_> {
         at: Place,
         wanted: Sort,
     ) -> Result<(String, Strength), Refused> {
-        let no = || Err((at, format!("the function `{name}`")));
+        let no = || Err((at, say!("the function `{name}`")));
         match (name, args) {
             ("SEL", [condition, no, yes]) => {
                 let condition = self.say(condition, Sort::Bool, OR)?;
@@ -309,10 +309,10 @@ fn literal(l: &Literal, at: Place) -> Result<(String, Strength), Refused> {
         Literal::Int(n, _) => match i32::try_from(*n) {
             Ok(n) if n >= 0 => (n.to_string(), ATOM),
             Ok(n) => (n.to_string(), SIGN),
-            Err(_) => return Err((at, format!("{n}, which is larger than 32 bits"))),
+            Err(_) => return Err((at, say!("{n}, which is larger than 32 bits"))),
         },
         Literal::Real(text, _) => (text.to_string(), ATOM),
-        Literal::Time(_) => return Err((at, "a duration".to_string())),
+        Literal::Time(_) => return Err((at, say!("a duration"))),
         Literal::Str(text) => (quoted(text), ATOM),
     })
 }

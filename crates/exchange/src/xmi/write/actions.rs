@@ -2,7 +2,7 @@
 
 use g7_model::{
     Action, ActionKind, Expr, ExprKind, Literal, Name, Order, Place, Qualifier, Situation, Step, Stmt,
-    StmtKind, Target, Type, Work,
+    StmtKind, Target, Type, Work, say,
 };
 
 use super::lookup::{Meaning, Node};
@@ -16,7 +16,10 @@ impl<'d> Writer<'d> {
             let without =
                 matches!(action.kind, ActionKind::Order(Order::Enclose(_)) | ActionKind::Comment(_));
             if !without && !self.look.takes_actions(node) {
-                self.cannot(action.at, "an action of an enclosing step, macro-step, entry or exit step");
+                self.cannot(
+                    action.at,
+                    say!("an action of an enclosing step, macro-step, entry or exit step"),
+                );
                 continue;
             }
             let place = format!("//@partialGrafcets.{}/@actionTypes.{}", self.sheet, web.actions.len());
@@ -42,25 +45,25 @@ impl<'d> Writer<'d> {
                 Some(element)
             }
             ActionKind::EachScan { .. } => {
-                self.cannot(at, "an action in each scan");
+                self.cannot(at, say!("an action in each scan"));
                 None
             }
             ActionKind::Order(Order::Force(chart, situation)) => self.forcing(at, chart, situation),
             ActionKind::Order(Order::Enclose(_)) => None,
             ActionKind::Order(Order::Enable(_)) => {
-                self.cannot(at, "an order that enables a chart");
+                self.cannot(at, say!("an order that enables a chart"));
                 None
             }
             ActionKind::Order(Order::Mask(_)) => {
-                self.cannot(at, "an order that masks");
+                self.cannot(at, say!("an order that masks"));
                 None
             }
             ActionKind::Order(Order::Call(_)) => {
-                self.cannot(at, "the call of a task");
+                self.cannot(at, say!("the call of a task"));
                 None
             }
             ActionKind::Comment(_) => {
-                self.leave_out(at, "a comment among the actions");
+                self.leave_out(at, say!("a comment among the actions"));
                 None
             }
         }
@@ -80,7 +83,7 @@ impl<'d> Writer<'d> {
                     Qualifier::P1 => None,
                     Qualifier::P0 => Some("deactivation"),
                     _ => {
-                        self.cannot(at, &format!("statements with the qualifier {}", qualifier.name()));
+                        self.cannot(at, say!("statements with the qualifier {}", qualifier));
                         return None;
                     }
                 };
@@ -110,7 +113,7 @@ impl<'d> Writer<'d> {
                 Some(element)
             }
             other => {
-                self.cannot(at, &format!("the qualifier {}", other.name()));
+                self.cannot(at, say!("the qualifier {}", other));
                 None
             }
         }
@@ -130,7 +133,7 @@ impl<'d> Writer<'d> {
         }
         if let Some(time) = time {
             if condition.is_some() {
-                self.cannot(at, "a delay or limit with a condition beside it");
+                self.cannot(at, say!("a delay or limit with a condition beside it"));
                 return None;
             }
             let sort = if qualifier == Qualifier::D { "timeDelayed" } else { "timeLimited" };
@@ -152,7 +155,7 @@ impl<'d> Writer<'d> {
                 self.assignment(at, target, value, when, place)
             }
             _ => {
-                self.cannot(at, "a stored action that is not one assignment");
+                self.cannot(at, say!("a stored action that is not one assignment"));
                 None
             }
         }
@@ -173,7 +176,7 @@ impl<'d> Writer<'d> {
         let variable = self.target(target)?;
         let value = self.term(value, "value", &format!("{place}/@value"), 0)?;
         if value.ty == Type::Bool && matches!(target.kind, ExprKind::Path(_)) && self.is_integer(target) {
-            self.cannot(at, "a Boolean value for a number");
+            self.cannot(at, say!("a Boolean value for a number"));
             return None;
         }
         element.push(variable);
@@ -203,7 +206,7 @@ impl<'d> Writer<'d> {
         match meaning {
             Some(Meaning::Var(reference, ty)) => Some(self.variable_term(&reference, ty, "variable").element),
             _ => {
-                self.cannot(e.at, "an action on what is no variable");
+                self.cannot(e.at, say!("an action on what is no variable"));
                 None
             }
         }
@@ -211,7 +214,7 @@ impl<'d> Writer<'d> {
 
     fn forcing(&mut self, at: Place, chart: &Name, situation: &Situation) -> Option<Element> {
         let Some(index) = self.look.chart(&chart.text) else {
-            self.cannot(at, "a forcing order for a chart that is not there");
+            self.cannot(at, say!("a forcing order for a chart that is not there"));
             return None;
         };
         let mut element = self.new_action("grafcet:ForcingOrder");
@@ -224,10 +227,10 @@ impl<'d> Writer<'d> {
                 let nodes: Vec<Node> =
                     steps.iter().filter_map(|s| self.look.step_node(index, &s.text)).collect();
                 if nodes.len() < steps.len() {
-                    self.cannot(at, "a forced step that is not there");
+                    self.cannot(at, say!("a forced step that is not there"));
                 }
                 if nodes.iter().any(|n| !self.look.is_initialisable(*n)) {
-                    self.cannot(at, "a forced macro-step, entry or exit step");
+                    self.cannot(at, say!("a forced macro-step, entry or exit step"));
                     return None;
                 }
                 let places: Vec<String> = nodes.into_iter().map(|n| self.look.place(n)).collect();

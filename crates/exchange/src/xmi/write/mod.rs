@@ -11,8 +11,8 @@ use g7_iec::signs;
 use g7_iec::xml::element::Element;
 use g7_model::codes::{self, Code};
 use g7_model::{
-    Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Literal, Place, Problem, ProfileName, Step,
-    StepKind, Transition, Type, UnaryOp, VarDecl, VarKind,
+    Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Literal, Place, Problem, ProfileName, Said,
+    Step, StepKind, Transition, Type, UnaryOp, VarDecl, VarKind, say,
 };
 
 use super::build::NAME_NOTE;
@@ -50,18 +50,18 @@ struct Writer<'d> {
 }
 
 impl<'d> Writer<'d> {
-    fn say(&mut self, code: &'static Code, at: Place, what: impl Into<String>) {
+    fn say(&mut self, code: &'static Code, at: Place, what: Said) {
         self.problems.push(Problem::new(code, at.0, what));
     }
 
     /// Reports an element with a meaning that the meta-model does not have.
-    fn cannot(&mut self, at: Place, what: &str) {
-        self.say(&codes::NOT_CARRIED, at, format!("{what}: the meta-model has none"));
+    fn cannot(&mut self, at: Place, what: Said) {
+        self.say(&codes::NOT_CARRIED, at, say!("{what}: the meta-model has none"));
     }
 
     /// Reports an element without which the chart means the same.
-    fn leave_out(&mut self, at: Place, what: &str) {
-        self.say(&codes::LEFT_OUT, at, format!("{what}: the meta-model has none; it is left out"));
+    fn leave_out(&mut self, at: Place, what: Said) {
+        self.say(&codes::LEFT_OUT, at, say!("{what}: the meta-model has none; it is left out"));
     }
 
     fn id(&mut self) -> String {
@@ -77,7 +77,7 @@ impl<'d> Writer<'d> {
         for note in &document.notes {
             match note.text.strip_prefix(NAME_NOTE) {
                 Some(name) => root.set("name", name.trim()),
-                None => self.leave_out(note.at.into(), "a note to the reader"),
+                None => self.leave_out(note.at.into(), say!("a note to the reader")),
             }
         }
         for item in &document.items {
@@ -116,24 +116,24 @@ impl<'d> Writer<'d> {
             Item::Var(_) | Item::Chart(_) => {}
             Item::Profile(p) if p.name == ProfileName::Iec60848 && p.switches.is_empty() => {}
             Item::Profile(p) => {
-                let what = format!(
+                let what = say!(
                     "the rules of evolution of `{}` or its switches; the meta-model's are those of IEC 60848",
                     p.name.name()
                 );
                 self.say(&codes::NOT_CARRIED, p.at, what);
             }
-            Item::Cycle(_, at) => self.leave_out(*at, "a scan time"),
-            Item::Target(_, at) => self.leave_out(*at, "a target"),
-            Item::Action(a) => self.cannot(a.at, "a named action"),
-            Item::Section(s) => self.cannot(s.at, "a transition section"),
-            Item::Function(f) => self.cannot(f.at, "a function"),
+            Item::Cycle(_, at) => self.leave_out(*at, say!("a scan time")),
+            Item::Target(_, at) => self.leave_out(*at, say!("a target")),
+            Item::Action(a) => self.cannot(a.at, say!("a named action")),
+            Item::Section(s) => self.cannot(s.at, say!("a transition section")),
+            Item::Function(f) => self.cannot(f.at, say!("a function")),
             Item::Pre(_, at) | Item::Post(_, at) => {
-                self.cannot(*at, "a processing before or behind the charts")
+                self.cannot(*at, say!("a processing before or behind the charts"))
             }
-            Item::Plant(p) => self.leave_out(p.at, "a plant"),
-            Item::Test(t) => self.leave_out(t.at, "a test"),
-            Item::Prove(p) => self.leave_out(p.at, "a property"),
-            Item::Layout(l) => self.leave_out(l.at, "a layout"),
+            Item::Plant(p) => self.leave_out(p.at, say!("a plant")),
+            Item::Test(t) => self.leave_out(t.at, say!("a test")),
+            Item::Prove(p) => self.leave_out(p.at, say!("a property")),
+            Item::Layout(l) => self.leave_out(l.at, say!("a layout")),
         }
     }
 
@@ -148,24 +148,24 @@ impl<'d> Writer<'d> {
         match var.ty {
             Type::Bool | Type::Dint => {}
             ty if ty.is_integer() => {
-                let what = format!("a variable of the type {ty}: an integer of the meta-model is a DINT");
+                let what = say!("a variable of the type {ty}: an integer of the meta-model is a DINT");
                 self.say(&codes::DIFFERENT, var.at, what);
             }
-            ty => return self.cannot_declare(var.at, &format!("a variable of the type {ty}")),
+            ty => return self.cannot_declare(var.at, say!("a variable of the type {ty}")),
         }
         if var.init.as_ref().is_some_and(|e| !is_zero(e)) {
-            self.cannot(var.at, "an initial value");
+            self.cannot(var.at, say!("an initial value"));
         }
         if var.inverted {
-            self.cannot(var.at, "an inverted channel");
+            self.cannot(var.at, say!("an inverted channel"));
         }
         if var.safe.as_ref().is_some_and(|e| !is_zero(e)) {
-            self.leave_out(var.at, "a safe value");
+            self.leave_out(var.at, say!("a safe value"));
         }
         for (there, what) in [
-            (var.address.is_some(), "an address"),
-            (var.retain, "a value that is kept over a restart"),
-            (var.comment.is_some(), "a comment"),
+            (var.address.is_some(), say!("an address")),
+            (var.retain, say!("a value that is kept over a restart")),
+            (var.comment.is_some(), say!("a comment")),
         ] {
             if there {
                 self.leave_out(var.at, what);
@@ -174,7 +174,7 @@ impl<'d> Writer<'d> {
         var.names.iter().map(|n| self.declaration(&n.text, kind, var.ty)).collect()
     }
 
-    fn cannot_declare(&mut self, at: Place, what: &str) -> Vec<Element> {
+    fn cannot_declare(&mut self, at: Place, what: Said) -> Vec<Element> {
         self.cannot(at, what);
         Vec::new()
     }
@@ -206,13 +206,13 @@ impl<'d> Writer<'d> {
         partial.set("xsi:type", class);
         partial.set("name", &chart.name.text);
         if chart.kind == ChartKind::Task {
-            self.cannot(chart.at, "a task");
+            self.cannot(chart.at, say!("a task"));
         }
         if chart.comment.is_some() {
-            self.leave_out(chart.at, "a comment");
+            self.leave_out(chart.at, say!("a comment"));
         }
         if chart.every.is_some() {
-            self.cannot(chart.at, "a period of a chart");
+            self.cannot(chart.at, say!("a period of a chart"));
         }
         if let Some(place) = self.look.enclosing(&chart.name.text) {
             partial.set("enclosingStep", &place);
@@ -229,10 +229,10 @@ impl<'d> Writer<'d> {
                     transitions += 1;
                 }
                 ChartItem::Pre(_, at) | ChartItem::Post(_, at) => {
-                    self.cannot(*at, "a processing before or behind a chart");
+                    self.cannot(*at, say!("a processing before or behind a chart"));
                 }
-                ChartItem::Action(a) => self.cannot(a.at, "a named action"),
-                ChartItem::Section(s) => self.cannot(s.at, "a transition section"),
+                ChartItem::Action(a) => self.cannot(a.at, say!("a named action")),
+                ChartItem::Section(s) => self.cannot(s.at, say!("a transition section")),
             }
         }
         if !vars.is_empty() {
@@ -248,11 +248,15 @@ impl<'d> Writer<'d> {
         let Some(node) = self.look.step_node(self.sheet, &step.name.text) else { return };
         let number = self.look.number(node);
         if self.look.renumbered(node) {
-            let what = format!("the meta-model numbers its steps: `{}` becomes {number}", step.name.text);
+            let what = say!(
+                "the meta-model numbers its steps: `{}` becomes {}",
+                step.name.text,
+                Said::foreign(&*number)
+            );
             self.say(&codes::RENAMED, step.name.at, what);
         }
         if step.comment.is_some() {
-            self.leave_out(step.at, "a comment");
+            self.leave_out(step.at, say!("a comment"));
         }
         let (tag, class) = match &step.kind {
             StepKind::Plain => ("steps", Some("grafcet:Step")),
@@ -274,7 +278,9 @@ impl<'d> Writer<'d> {
         for (there, name) in [(step.initial, "initial"), (step.linked, "activationLink")] {
             match (there, class) {
                 (true, Some(_)) => element.set(name, "true"),
-                (true, None) => self.cannot(step.at, "an initial or linked macro-step, entry or exit step"),
+                (true, None) => {
+                    self.cannot(step.at, say!("an initial or linked macro-step, entry or exit step"))
+                }
                 (false, _) => {}
             }
         }
@@ -300,18 +306,18 @@ impl<'d> Writer<'d> {
             }
             Some((label, _)) => {
                 let what =
-                    format!("the meta-model numbers its transitions: the label `{}` is left out", label.text);
+                    say!("the meta-model numbers its transitions: the label `{}` is left out", label.text);
                 self.say(&codes::RENAMED, label.at, what);
             }
         }
         if transition.comment.is_some() {
-            self.leave_out(transition.at, "a comment");
+            self.leave_out(transition.at, say!("a comment"));
         }
         if transition.priority.is_some() {
-            self.leave_out(transition.at, "a priority");
+            self.leave_out(transition.at, say!("a priority"));
         }
         if transition.on_clearing.is_some() {
-            self.cannot(transition.at, "a stored action on clearing");
+            self.cannot(transition.at, say!("a stored action on clearing"));
         }
         let term = self.timed(&transition.receptivity, &format!("{place}/@term"), &mut element);
         element.extend(term);

@@ -1,6 +1,6 @@
 //! Writes expressions as terms.
 
-use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Type, UnaryOp, codes};
+use g7_model::{BinaryOp, Expr, ExprKind, Literal, Nanos, Type, UnaryOp, codes, say};
 
 use super::Writer;
 use super::lookup::{Asked, Meaning};
@@ -39,7 +39,7 @@ impl Writer<'_> {
             (false, Some(_)) => "timeDependent",
             (true, None) => "timeLimited",
             (true, Some(_)) => {
-                self.cannot(e.at, "the complement of a time operator with two times");
+                self.cannot(e.at, say!("the complement of a time operator with two times"));
                 return None;
             }
         };
@@ -54,7 +54,7 @@ impl Writer<'_> {
             _ => None,
         };
         let (Some(first), Some(second)) = (constant(t1), t2.map_or(Some(Nanos::ZERO), constant)) else {
-            return self.cannot(t1.at, "a time that is computed");
+            return self.cannot(t1.at, say!("a time that is computed"));
         };
         let in_units = |unit: Nanos| Some((first.whole(unit)?, second.whole(unit)?));
         let seconds = in_units(Nanos::SECOND);
@@ -62,7 +62,7 @@ impl Writer<'_> {
         let Some((first, second)) =
             seconds.or_else(|| in_units(Nanos::MILLISECOND)).filter(|(a, b)| fits(a) && fits(b))
         else {
-            return self.cannot(t1.at, "a time that is no whole number of seconds or milliseconds");
+            return self.cannot(t1.at, say!("a time that is no whole number of seconds or milliseconds"));
         };
         for (name, count) in [("delayTime", first), ("resetTime", second)] {
             if count != 0 {
@@ -83,7 +83,7 @@ impl Writer<'_> {
     /// Writes a term; None if a problem has been reported.
     pub(super) fn term(&mut self, e: &Expr, tag: &'static str, place: &str, depth: usize) -> Option<Term> {
         if depth > DEEPEST {
-            self.say(&codes::TOO_DEEP, e.at, format!("a term more than {DEEPEST} operators deep"));
+            self.say(&codes::TOO_DEEP, e.at, say!("a term more than {DEEPEST} operators deep"));
             return None;
         }
         match &e.kind {
@@ -91,14 +91,14 @@ impl Writer<'_> {
             ExprKind::Path(path) => match self.look.path(self.sheet, path) {
                 Some(meaning) => self.meaning(e, &meaning, tag, place, depth),
                 None => {
-                    self.cannot(e.at, &format!("what `{}` stands for", path.text()));
+                    self.cannot(e.at, say!("what `{}` stands for", path.text()));
                     None
                 }
             },
             ExprKind::Direct(address) => match self.look.direct(address) {
                 Some(meaning) => self.meaning(e, &meaning, tag, place, depth),
                 None => {
-                    self.cannot(e.at, &format!("`%{address}`"));
+                    self.cannot(e.at, say!("`%{address}`"));
                     None
                 }
             },
@@ -106,7 +106,7 @@ impl Writer<'_> {
             ExprKind::Binary(op, a, b) => self.binary(e, *op, (a, b), tag, place, depth),
             ExprKind::Timer { t1, e: inner, t2 } => self.inner_timer(e, t1, inner, t2.is_some(), tag),
             ExprKind::Call(path, _) => {
-                self.cannot(e.at, &format!("a call of `{}`", path.text()));
+                self.cannot(e.at, say!("a call of `{}`", path.text()));
                 None
             }
             ExprKind::Bad => None,
@@ -129,7 +129,7 @@ impl Writer<'_> {
                 Some(self.variable_term(&reference, Type::Bool, tag))
             }
             Meaning::Step(_) => {
-                self.cannot(e.at, "the activity of a macro-step, entry or exit step as a term");
+                self.cannot(e.at, say!("the activity of a macro-step, entry or exit step as a term"));
                 None
             }
         }
@@ -156,10 +156,10 @@ impl Writer<'_> {
             _ => None,
         };
         let Some(name) = name else {
-            self.cannot(e.at, "a time operator within a term");
+            self.cannot(e.at, say!("a time operator within a term"));
             return None;
         };
-        let what = format!(
+        let what = say!(
             "a time operator within a term: the meta-model has none; it is written as a Boolean `{name}`"
         );
         self.say(&codes::DIFFERENT, e.at, what);
@@ -188,7 +188,7 @@ impl Writer<'_> {
             }
             Literal::Int(n, _) => self.integer(e, *n, tag, place),
             Literal::Real(..) | Literal::Time(_) | Literal::Str(_) => {
-                self.cannot(e.at, "a constant that is neither Boolean nor a whole number");
+                self.cannot(e.at, say!("a constant that is neither Boolean nor a whole number"));
                 None
             }
         }
@@ -196,7 +196,7 @@ impl Writer<'_> {
 
     fn integer(&mut self, e: &Expr, n: i128, tag: &'static str, place: &str) -> Option<Term> {
         if i32::try_from(n).is_err() {
-            self.cannot(e.at, "a whole number of more than 32 bits");
+            self.cannot(e.at, say!("a whole number of more than 32 bits"));
             return None;
         }
         let text = (n != 0).then(|| n.to_string());
@@ -280,7 +280,7 @@ impl Writer<'_> {
             BinaryOp::Gt => "terms:GreaterThan",
             BinaryOp::Lt => "terms:LessThan",
             BinaryOp::Mul | BinaryOp::Div | BinaryOp::Mod | BinaryOp::Pow => {
-                self.cannot(e.at, "a product, quotient, remainder or power of numbers");
+                self.cannot(e.at, say!("a product, quotient, remainder or power of numbers"));
                 return None;
             }
             BinaryOp::Xor | BinaryOp::Ne | BinaryOp::Le | BinaryOp::Ge => return None,

@@ -138,9 +138,9 @@ impl Sight {
             "code": problem.code.id,
             "path": path,
             "line": 1 + above.matches('\n').count(),
-            "what": problem.what,
-            "help": problem.help,
-            "related": problem.related.iter().map(|(_, what)| what).collect::<Vec<_>>(),
+            "what": problem.what.as_str(),
+            "help": problem.help.as_deref(),
+            "related": problem.related.iter().map(|(_, what)| what.as_str()).collect::<Vec<_>>(),
             "error": problem.severity() == Severity::Error,
         })
     }

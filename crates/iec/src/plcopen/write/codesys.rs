@@ -15,7 +15,7 @@ use crate::nodes::conjuncts;
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
     Action, ActionKind, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Path, Problem,
-    Qualifier, Span, Step, StepKind, Stmt, StmtKind, Target, Type, UnaryOp, VarDecl, codes,
+    Qualifier, Said, Span, Step, StepKind, Stmt, StmtKind, Target, Type, UnaryOp, VarDecl, codes, say,
 };
 
 /// The variables by which a program controls its chart: the name, and whether it resets and holds the chart.
@@ -24,14 +24,14 @@ const FLAGS: [(&str, bool, bool); 3] =
 
 /// Takes out what CODESYS does by flags.
 pub(super) fn by_flags(document: &mut Document, problems: &mut Vec<Problem>) {
-    let mut lost = |at: Span, what: String| problems.push(Problem::new(&codes::NOT_CARRIED, at, what));
+    let mut lost = |at: Span, what: Said| problems.push(Problem::new(&codes::NOT_CARRIED, at, what));
     for item in &mut document.items {
         match item {
             Item::Var(decl) => {
                 if let Some(name) = decl.names.iter().find(|n| flag(&n.text).is_some()) {
-                    let what = format!(
-                        "CODESYS controls charts by variables called `{0}`; declare it in the chart that it controls, or call it otherwise",
-                        name.text
+                    let what = say!(
+                        "CODESYS controls charts by variables called `{name}`; declare it in the chart that it controls, or call it otherwise",
+                        name = name.text
                     );
                     lost(name.at.0, what);
                 }
@@ -48,15 +48,16 @@ fn flag(name: &str) -> Option<(bool, bool)> {
     FLAGS.iter().find(|f| f.0.eq_ignore_ascii_case(name)).map(|f| (f.1, f.2))
 }
 
-fn of_chart(chart: &mut Chart, lost: &mut impl FnMut(Span, String)) {
+fn of_chart(chart: &mut Chart, lost: &mut impl FnMut(Span, Said)) {
     let bools = chart.vars().filter(|v| v.ty == Type::Bool).flat_map(|v| v.names.clone());
     let flags: Vec<_> = bools.filter_map(|n| flag(&n.text).map(|f| (n, f))).collect();
     let mut held: Vec<String> = Vec::new();
     for (name, (resets, holds)) in flags {
         if chart.kind != ChartKind::Chart || resets && !take_reset(chart, &name.text) {
-            let what = format!(
-                "CODESYS puts a chart into its initial steps while its variable `{0}` is TRUE, and `pre {{ IF {0} THEN INITCHART({1}) END_IF }}` is missing here; add it, or call the variable otherwise",
-                name.text, chart.name.text
+            let what = say!(
+                "CODESYS puts a chart into its initial steps while its variable `{name}` is TRUE, and `pre {{ IF {name} THEN INITCHART({chart}) END_IF }}` is missing here; add it, or call the variable otherwise",
+                name = name.text,
+                chart = chart.name.text
             );
             lost(name.at.0, what);
         } else if holds {
@@ -66,7 +67,7 @@ fn of_chart(chart: &mut Chart, lost: &mut impl FnMut(Span, String)) {
     for name in &held {
         let guard = Guard { chart: &chart.name.text, name };
         if let Some(at) = guard.missing(chart) {
-            let what = format!(
+            let what = say!(
                 "CODESYS holds the chart `{}` while its variable `{name}` is TRUE, which this does not wait for: it needs `not {name}`",
                 chart.name.text
             );

@@ -20,7 +20,7 @@ use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
     Action, ActionKind, BinaryOp, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, FbKind, Item,
     Literal, Name, NamedAction, Nanos, Path, Problem, Qualifier, Span, Step, Stmt, StmtKind, Target, Type,
-    VarDecl, VarKind, codes,
+    VarDecl, VarKind, codes, say,
 };
 
 use super::clocks::{Clocks, outputs_apart};
@@ -180,7 +180,7 @@ impl Control<'_> {
         let twin = |name: &str| variables.contains(&key(name)) || key(name) == key(&title);
         for step in chart.steps().filter(|s| twin(&s.name.text)) {
             let name = self.taken.give(&format!("{title}_{}", step.name.text));
-            let what = format!("`{}` is called `{name}` there", step.name.text);
+            let what = say!("`{}` is called `{name}` there", step.name.text);
             self.problems.push(Problem::new(&codes::RENAMED, step.name.at.0, what));
             new.insert(key(&step.name.text), name);
         }
@@ -235,7 +235,7 @@ impl Control<'_> {
     fn body(&mut self, body: &Work, list: &mut Vec<Stmt>) {
         let at = body.drives.first().map_or(Span::default(), |d| d.at);
         if let Some(end) = returns(&body.list) {
-            let what = "RETURN in a body: it would end the other actions there as well";
+            let what = say!("RETURN in a body: it would end the other actions there as well");
             self.problems.push(Problem::new(&codes::NOT_CARRIED, end, what));
         }
         let (level, pulse) = self.block(&body.name, &body.drives, list);

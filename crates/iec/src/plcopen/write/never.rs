@@ -7,7 +7,9 @@
 use std::collections::HashSet;
 
 use g7_model::visit_mut::{self, Visitor};
-use g7_model::{Chart, ChartItem, Document, Expr, ExprKind, Item, Nanos, Problem, Transition, codes};
+use g7_model::{
+    Chart, ChartItem, Document, Expr, ExprKind, Item, Nanos, Problem, Said, Transition, codes, say,
+};
 
 use crate::nodes;
 
@@ -29,7 +31,7 @@ pub(super) fn never(chart: &mut Chart, problems: &mut Vec<Problem>) {
     let mut gone = Gone(HashSet::new());
     for step in chart.steps().filter(|s| !reached.contains(&*s.name.text)) {
         gone.0.insert(step.name.text.to_ascii_uppercase());
-        let what = format!("step `{}`, which no transition can reach, and what is behind it", step.name.text);
+        let what = say!("step `{}`, which no transition can reach, and what is behind it", step.name.text);
         problems.push(Problem::new(&codes::LEFT_OUT, step.name.at.0, what));
     }
     if gone.0.is_empty() {
@@ -77,7 +79,7 @@ pub(super) fn seconds(document: &mut Document, problems: &mut Vec<Problem>) {
             let ExprKind::Call(path, _) = &e.kind else { return };
             let name = path.text().to_ascii_uppercase();
             if (name.starts_with("TIME_TO_") || name.ends_with("_TO_TIME")) && !name.contains("STRING") {
-                let what = format!("{name} counts in seconds there, and in milliseconds here");
+                let what = say!("{} counts in seconds there, and in milliseconds here", Said::foreign(name));
                 self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
             }
         }

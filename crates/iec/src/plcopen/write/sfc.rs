@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Item, Literal, Problem, Step, StepKind,
-    Target, Transition, Work,
+    Action, ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Item, Literal, Problem, Said, Step,
+    StepKind, Target, Transition, Work, say,
 };
 
 use super::codesys::attribute;
@@ -283,7 +283,7 @@ impl Sfc<'_> {
         let (qualifier, time, target) = match &action.kind {
             ActionKind::Qualified { qualifier, time, target, .. } => (qualifier, time, target),
             ActionKind::Comment(text) => {
-                let what = format!("the comment \"{text}\" beside a step");
+                let what = say!("the comment \"{}\" beside a step", Said::foreign(text.as_ref()));
                 self.problems.push(Problem::new(&codes::LEFT_OUT, action.at.0, what));
                 return None;
             }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, NamedAction, Problem, Qualifier, Step, Stmt, Target, Transition,
-    Work, codes,
+    Work, codes, say,
 };
 
 use super::{Exporter, clean};
@@ -41,7 +41,7 @@ impl<'d> Exporter<'d> {
         let mut before = chart.steps().take_while(|s| !s.initial);
         let Some(initial) = chart.steps().find(|s| s.initial).filter(|s| acts(s)) else { return };
         if before.any(acts) {
-            let what = format!(
+            let what = say!(
                 "the initial step `{}` stands before the other steps there, as compilers want it; in a scan that runs actions of it and of a step before it, they run in the other order",
                 initial.name.text
             );

@@ -1,0 +1,124 @@
+//! The table of texts in French and Portuguese, held to the sources: each `say!` and each title of a code has
+//! a row, each row is used, and its holes are those of the English text.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::PathBuf;
+
+use g7_model::{codes, said};
+use g7_tests::house::{ends_in, files, none, read};
+
+/// The string literal at the start of a text, as Rust reads it.
+fn literal(code: &str) -> Option<String> {
+    let mut chars = code.strip_prefix('"')?.chars().peekable();
+    let mut text = String::new();
+    loop {
+        match chars.next()? {
+            '"' => return Some(text),
+            '\\' => match chars.next()? {
+                '\n' => while chars.next_if(|c| c.is_whitespace()).is_some() {},
+                'n' => text.push('\n'),
+                'u' => {
+                    let code: String = chars.by_ref().skip(1).take_while(|c| *c != '}').collect();
+                    text.push(u32::from_str_radix(&code, 16).ok().and_then(char::from_u32)?);
+                }
+                c => text.push(c),
+            },
+            c => text.push(c),
+        }
+    }
+}
+
+/// The texts of `say!` in a source without its tests and comments.
+fn said_in(source: &str) -> Vec<String> {
+    let own = source.split("#[cfg(test)]\nmod ").next().unwrap_or("");
+    let code: String =
+        own.lines().filter(|l| !l.trim_start().starts_with("//")).map(|l| l.to_owned() + "\n").collect();
+    code.match_indices("say!(")
+        .filter(|(at, _)| !code[..*at].ends_with(|c: char| c.is_alphanumeric() || c == '_'))
+        .filter_map(|(at, word)| literal(code[at + word.len()..].trim_start()))
+        .collect()
+}
+
+/// The names in the holes of a text, in order, and whether a letter stands outside of holes and back-ticks.
+fn taken_apart(text: &str) -> (Vec<String>, bool) {
+    let (mut holes, mut ticked, mut words) = (Vec::new(), false, false);
+    let mut chars = text.chars().peekable();
+    while let Some(c) = chars.next() {
+        match c {
+            '{' | '}' if chars.peek() == Some(&c) => {
+                chars.next();
+            }
+            '{' => {
+                let hole: String = chars.by_ref().take_while(|c| *c != '}').collect();
+                holes.push(hole.split(':').next().unwrap_or("").to_owned());
+            }
+            '`' => ticked = !ticked,
+            c => words |= !ticked && c.is_alphabetic(),
+        }
+    }
+    (holes, words)
+}
+
+/// The texts that have words, with the crates that say them.
+fn all_said() -> BTreeMap<String, BTreeSet<String>> {
+    let mut said: BTreeMap<String, BTreeSet<String>> = BTreeMap::new();
+    let source =
+        |f: &&PathBuf| f.starts_with("crates") && ends_in(f, &["rs"]) && !f.starts_with("crates/say");
+    for file in files().iter().filter(source) {
+        let test = file.iter().any(|p| p == "tests" || p.to_string_lossy().ends_with("tests.rs"));
+        let home = file.iter().nth(1).unwrap_or_default().to_string_lossy().into_owned();
+        if !test && file.iter().any(|p| p == "src") {
+            for text in said_in(&read(file)).into_iter().filter(|t| taken_apart(t).1) {
+                said.entry(text).or_default().insert(home.clone());
+            }
+        }
+    }
+    assert!(said.len() > 600, "only {} texts", said.len());
+    for code in codes::ALL {
+        said.entry(code.title.to_owned()).or_default().insert("codes".to_owned());
+    }
+    said
+}
+
+#[test]
+fn each_text_is_told_in_each_language() {
+    let rows: BTreeMap<&str, said::Row> = said::rows().map(|row| (row[0], row)).collect();
+    let said = all_said();
+    let lacking = said.iter().filter(|(text, _)| !rows.contains_key(&***text));
+    let found: Vec<String> = lacking.map(|(text, homes)| format!("{homes:?}: no row: {text}")).collect();
+    none(&found, "texts that a language lacks");
+}
+
+#[test]
+fn each_row_is_used_once_and_is_whole() {
+    let said = all_said();
+    let mut seen = BTreeSet::new();
+    let mut found = Vec::new();
+    for [english, french, portuguese] in said::rows() {
+        if !said.contains_key(english) {
+            found.push(format!("no text: {english}"));
+        }
+        if !seen.insert(english) {
+            found.push(format!("twice: {english}"));
+        }
+        let mut wanted = taken_apart(english).0;
+        wanted.sort();
+        for told in [french, portuguese] {
+            let mut holes = taken_apart(told).0;
+            holes.sort();
+            if holes != wanted || told.is_empty() || told.ends_with('.') || told.matches('`').count() % 2 == 1
+            {
+                found.push(format!("not the same holes, or a stop at its end: {english}: {told}"));
+            }
+        }
+    }
+    none(&found, "rows of the table of texts that do not fit");
+}
+
+#[test]
+fn texts_are_found_and_taken_apart() {
+    let source = "// say!(\"no\")\n let a = say!(\n    \"`{x}` has \\\n     {}\", 1); bsay!(\"no\");\n#[cfg(test)]\nmod t { say!(\"no\") }";
+    assert_eq!(said_in(source), ["`{x}` has {}"]);
+    assert_eq!(taken_apart("`{x}` {} {n:?} {{").0, ["x", "", "n"]);
+    assert!(!taken_apart("`word` {}").1 && taken_apart("a `b`").1);
+}
