@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use g7_model::{
     BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, Name, Nanos, Param,
-    PlaceAt, Placed, Profile, ProfileName, Said, Step, StepKind, Stmt, StmtKind, Switch, Type, codes, say,
+    PlaceAt, Placed, Profile, ProfileName, Step, StepKind, Stmt, StmtKind, Switch, Type, codes, say,
 };
 use g7_model::{Expr, Local, Span};
 
@@ -77,7 +77,7 @@ pub(super) fn document(plan: &Plan, report: &mut Report) -> Document {
 fn pages(plan: &Plan, report: &mut Report) -> Vec<(i64, String)> {
     let mut pages: Vec<(i64, String)> = Vec::new();
     let mut taken = Taken::default();
-    let mut add = |page: i64, wanted: Said, pages: &mut Vec<(i64, String)>| {
+    let mut add = |page: i64, wanted: &str, pages: &mut Vec<(i64, String)>| {
         let mut title = nodes::line(&wanted.replace('`', "'"));
         if title.is_empty() {
             title = format!("Page{page}");

@@ -54,7 +54,7 @@ fn session(connection: &Connection) -> Result<(), Failure> {
     // The client knows the language of its reader; else the surroundings do.
     let locale = asked.get("locale").and_then(serde_json::Value::as_str);
     let language = locale.map_or_else(crate::tongue::language, |l| Language::of(l).unwrap_or_default());
-    let mut open = Open { language, ..Open::default() };
+    let mut open = Open::in_language(language);
     while let Some(message) = next(connection, &mut open)? {
         match message {
             Message::Request(request) => {

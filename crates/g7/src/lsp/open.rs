@@ -34,6 +34,11 @@ struct Text {
 }
 
 impl Open {
+    /// No texts, for a reader of this language.
+    pub(super) fn in_language(language: g7_model::Language) -> Open {
+        Open { language, ..Open::default() }
+    }
+
     /// The file at an address, if it is open.
     pub(super) fn file(&self, uri: &Uri) -> Option<&File> {
         self.texts.get(uri.as_str())?.file.as_ref().ok()

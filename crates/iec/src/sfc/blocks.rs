@@ -198,7 +198,7 @@ impl Expander<'_> {
         if depth > DEEPEST || !self.spend(1 + count(&body), at) {
             return Vec::new();
         }
-        let variable = |own: &str| nodes::name(&[say!("{name}.{own}")], at);
+        let variable = |own: &str| nodes::name(&[&format!("{name}.{own}")], at);
         let inputs: Vec<&Variable> =
             vars.iter().filter(|v| matches!(v.section, Section::Input | Section::InOut)).collect();
         let mut list = Vec::new();

@@ -115,13 +115,13 @@ impl Parser<'_> {
     pub(super) fn loose_time(&mut self) -> Expr {
         let number = self.bump();
         let unit = self.bump();
-        let text = say!("{}{}", self.slice(number), self.slice(unit));
+        let text = format!("{}{}", self.slice(number), self.slice(unit));
         let at = self.since(number.start);
         self.lexer.problems.add(at, || {
             let what = say!("no blank stands between the number and the unit of a duration");
-            meant(Problem::new(&codes::BAD_DURATION, at, what), text)
+            meant(Problem::new(&codes::BAD_DURATION, at, what), &text)
         });
-        let time = constant::duration(text).unwrap_or(UNREAD_TIME);
+        let time = constant::duration(&text).unwrap_or(UNREAD_TIME);
         Expr { kind: ExprKind::Literal(Literal::Time(time)), at: at.into() }
     }
 
