@@ -33,6 +33,16 @@ fn edges_and_delays_are_named_by_what_they_watch() {
     }
 }
 
+/// Scans are counted in a LINT, and `wait` is an INT: the standard compares equal types.
+#[test]
+fn words_of_two_types_are_compared_as_one() {
+    let text =
+        st("profile iec61131 { scan-clock }\nvar wait : INT := 5\nchart G {\n  initial step 1\n  step 2\n  \
+                   1 -> 2 when X1.t >= wait\n  2 -> 1 when X2.t >= 3\n}\n");
+    assert!(text.contains(", 32767) >= INT_TO_LINT(wait)"), "{text}");
+    assert!(text.contains(", 32767) >= 3"), "{text}");
+}
+
 #[test]
 fn and_within_or_has_brackets() {
     let text = st("profile iec61131\ninput a : BOOL\ninput b : BOOL\ninput c : BOOL\nchart G {\n  \

@@ -101,7 +101,22 @@ impl Scan<'_> {
         if ty == Type::Time && matches!(op, Arith::Mul | Arith::Div | Arith::Mod) {
             return self.scaled(op, sign, a, b);
         }
-        Ex::op(sign, self.ex(a), self.ex(b))
+        let (x, y) = self.alike(a, b);
+        Ex::op(sign, x, y)
+    }
+
+    /// Two operands of one type: the standard has no operator for an INT beside a LINT, which are both words of the
+    /// engine.
+    fn alike(&mut self, a: &Expr, b: &Expr) -> (Ex, Ex) {
+        // A constant is written without a type.
+        let typed = |s: &Self, e: &Expr| s.type_of(e).filter(|_| !matches!(e, Expr::Const(..)));
+        match (typed(self, a), typed(self, b)) {
+            (Some(x), Some(y)) if x != y && whole(x) && whole(y) => {
+                let both = if widens(x, y) { y } else { x };
+                (self.ex_as(both, a), self.ex_as(both, b))
+            }
+            _ => (self.ex(a), self.ex(b)),
+        }
     }
 
     /// A TIME times or by a number; the standard has the TIME on the left.
@@ -133,7 +148,7 @@ impl Scan<'_> {
         if let Some(e) = self.tenths(sign, a, b) {
             return e;
         }
-        let (x, mut y) = (self.ex(a), self.ex(b));
+        let (x, mut y) = self.alike(a, b);
         // A TIME is divided by a number, which is asked for 0.
         if let (Type::Time, Ex::Time(n)) = (ty, &y)
             && self.type_of(a).is_some_and(whole)
@@ -220,7 +235,8 @@ impl Scan<'_> {
             let each = (0..n).map(|i| unequal(ty, at(&x, i), at(&y, i))).collect::<Vec<_>>();
             return Ex::any(each);
         }
-        unequal(ty, self.ex(a), self.ex(b))
+        let (x, y) = self.alike(a, b);
+        unequal(ty, x, y)
     }
 
     fn convert(&mut self, from: Type, to: Type, x: &Expr) -> Ex {

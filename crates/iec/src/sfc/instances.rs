@@ -5,14 +5,15 @@
 //! ```
 //!
 //! A program that calls such an instance is split there: its body runs up to the call and gives the inputs, then
-//! the charts evolve, and the rest of the body runs behind them.
+//! the charts evolve, and the rest of the body runs behind them. A chart that is called on a condition waits for a
+//! variable that the call sets.
 
 use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
-use g7_model::{Arg, Name, Path, Problem, Span, Stmt, StmtKind, VarKind, codes, say};
+use g7_model::{Arg, Name, Path, Problem, Span, Stmt, StmtKind, Type, VarKind, codes};
 
-use super::unit::{Instance, Source, Unit, UnitKind};
+use super::unit::{Instance, Part, Source, Unit, UnitKind};
 use crate::nodes::{self, Taken};
 use crate::report::Report;
 use crate::st::{Section, Variable};
@@ -26,6 +27,7 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
     if !source.units.iter().any(is_block) {
         return;
     }
+    own_globals(source);
     let mut taken = Taken::default();
     let of_globals = source.globals.iter().chain(source.units.iter().flat_map(|u| &u.vars));
     let is_instance = |v: &&Variable| v.unknown.is_some();
@@ -51,20 +53,22 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
             used.insert(block.name.text.to_uppercase());
             let size = block.parts.len() + block.vars.len() + 1;
             if size > left {
-                let what = say!("more instances of function blocks than are read");
+                let what = "more instances of function blocks than are read";
                 report.put(Problem::new(&codes::TOO_LARGE, variable.decl.at.0, what));
                 continue;
             }
             left -= size;
             let own = taken.give(&name.text);
             if own != *name.text {
-                let what = say!("something else is called `{}`; the chart is called `{own}`", name.text);
+                let what = format!("something else is called `{}`; the chart is called `{own}`", name.text);
                 report.put(Problem::new(&codes::RENAMED, name.at.0, what));
             }
             let given = block.vars.iter().filter(|v| v.section == Section::Input);
             let inputs = given.flat_map(|v| v.decl.names.clone()).collect();
             let unit = instance(block, Name::new(own.clone(), name.at.0), report);
-            charts.insert(name.text.to_uppercase(), Chart { name: own, vars: unit.vars.clone(), inputs });
+            let flag = flag(&unit);
+            let chart = Chart { name: own, vars: unit.vars.clone(), inputs, flag };
+            charts.insert(name.text.to_uppercase(), chart);
             made.push((title.clone(), unit));
         }
         if let Some(program) = source.units.get_mut(number).filter(|_| !charts.is_empty()) {
@@ -72,8 +76,12 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
                 let own = v.decl.names.first().map_or(String::new(), |n| n.text.to_uppercase());
                 v.unknown.is_none() || !charts.contains_key(&own)
             });
-            for idle in split(program, &charts, report) {
-                made.retain(|(_, unit)| *unit.name.text != *idle);
+            let (idle, sometimes) = split(program, &charts, report);
+            made.retain(|(_, unit)| !idle.contains(&*unit.name.text));
+            for (_, unit) in &mut made {
+                if let Some(flag) = sometimes.get(&*unit.name.text) {
+                    wait(unit, flag);
+                }
             }
         }
     }
@@ -91,12 +99,67 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
     }
 }
 
+/// Gives a global instance to the only program that uses it. Of others the reader tells that they are not read.
+fn own_globals(source: &mut Source) {
+    let is_block = |u: &&Unit| u.kind == UnitKind::FunctionBlock && u.is_chart();
+    let blocks: HashSet<String> =
+        source.units.iter().filter(is_block).map(|u| u.name.text.to_uppercase()).collect();
+    let units = &mut source.units;
+    source.globals.retain(|global| {
+        let Some((ty, name)) = global.unknown.as_ref().zip(global.decl.names.first()) else { return true };
+        if !blocks.contains(&ty.text.to_uppercase()) {
+            return true;
+        }
+        let of = |v: &Variable| {
+            v.section == Section::External && v.decl.names.first().is_some_and(|n| same(n, name))
+        };
+        let mut users = units.iter_mut().filter(|u| u.vars.iter().any(of));
+        let (Some(user), None) = (users.next(), users.next()) else { return true };
+        let is_program = user.kind == UnitKind::Program && !user.is_chart();
+        for variable in user.vars.iter_mut().filter(|v| is_program && of(v)) {
+            variable.section = Section::Local;
+        }
+        !is_program
+    });
+}
+
 /// A chart that stands for an instance.
 struct Chart {
     name: String,
     vars: Vec<Variable>,
     /// Its inputs, in their order.
     inputs: Vec<Name>,
+    /// The name of a variable that tells whether it is called, where that has a condition.
+    flag: String,
+}
+
+/// A name for the variable that tells whether a chart is called, which nothing else of it has.
+fn flag(unit: &Unit) -> String {
+    let mut taken = Taken::default();
+    unit.vars.iter().flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
+    for part in &unit.parts {
+        if let Part::Step { name, .. } | Part::Action { name, .. } = part {
+            taken.take(&name.text);
+        }
+    }
+    taken.give("Called")
+}
+
+/// The transitions and bodies of a chart wait until it is called.
+fn wait(unit: &mut Unit, flag: &str) {
+    let at = unit.name.at.0;
+    let called = || nodes::name(&[flag], at);
+    for part in &mut unit.parts {
+        match part {
+            Part::Transition(t) => t.receptivity = nodes::and(called(), t.receptivity.clone(), at),
+            Part::Action { body, .. } if !body.is_empty() => {
+                *body = vec![nodes::when(called(), std::mem::take(body), Vec::new(), at)];
+            }
+            Part::Action { .. } | Part::Step { .. } => {}
+        }
+    }
+    let decl = nodes::variable(VarKind::Var, flag, Type::Bool, at);
+    unit.vars.push(Variable { section: Section::Local, decl, unknown: None });
 }
 
 /// The unit of one instance: its inputs and outputs are variables that its program uses.
@@ -105,9 +168,8 @@ fn instance(block: &Unit, name: Name, report: &mut Report) -> Unit {
     unit.name = name;
     for variable in &mut unit.vars {
         if variable.section == Section::InOut {
-            let what = say!(
-                "a variable of both directions of a block with a chart: nothing outside is changed by it"
-            );
+            let what =
+                "a variable of both directions of a block with a chart: nothing outside is changed by it";
             report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         }
         if matches!(variable.section, Section::Input | Section::Output | Section::InOut) {
@@ -120,91 +182,154 @@ fn instance(block: &Unit, name: Name, report: &mut Report) -> Unit {
     unit
 }
 
-/// Splits the body of a program where it calls charts. Returns the charts that it never calls.
-fn split(program: &mut Unit, charts: &HashMap<String, Chart>, report: &mut Report) -> Vec<String> {
+/// Splits the body of a program where it calls charts. Returns the charts that it never calls, and the flags of
+/// those that it calls on a condition.
+fn split(
+    program: &mut Unit,
+    charts: &HashMap<String, Chart>,
+    report: &mut Report,
+) -> (HashSet<String>, HashMap<String, String>) {
     let mut body = std::mem::take(&mut program.body);
     visit_mut::stmts(&mut body, &mut Inside { charts });
-    let called = |s: &Stmt| match &s.kind {
-        StmtKind::Call(path, _) => charts.values().find(|c| *c.name == *path.text()),
-        _ => None,
-    };
-    let last = body.iter().rposition(|s| called(s).is_some());
-    let first = body.iter().position(|s| called(s).is_some());
+    let most: HashMap<&str, usize> =
+        charts.values().map(|c| (c.name.as_str(), most(&body, &c.name))).collect();
+    let calls = |s: &Stmt| charts.values().any(|c| most_in(s, &c.name) > 0);
+    let last = body.iter().rposition(calls);
+    let first = body.iter().position(calls);
     if last.is_some() && super::blocks::returns(&body, true) {
-        let what = say!("RETURN in a program that calls a chart: the chart would evolve behind it");
+        let what = "RETURN in a program that calls a chart: the chart would evolve behind it";
         report.put(Problem::new(&codes::NOT_CARRIED, program.name.at.0, what));
     }
-    let mut seen = HashSet::new();
-    let mut given = Reads::default();
-    for (number, stmt) in body.into_iter().enumerate() {
-        let Some(chart) = called(&stmt) else {
-            if first.is_some_and(|f| f < number) && last.is_some_and(|l| number < l) {
-                let what = say!(
-                    "charts of called blocks evolve together, behind this; what it reads of them is of the scan before"
-                );
-                report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, what));
-            }
-            within(&stmt, charts, &mut seen, report);
-            let late = last.is_some_and(|last| number > last);
-            if late { &mut program.behind } else { &mut program.body }.push(stmt);
-            continue;
-        };
-        let StmtKind::Call(_, args) = &stmt.kind else { continue };
-        if !seen.insert(chart.name.clone()) {
-            let what = say!("`{}` is called twice in a scan; its chart evolves once", chart.name);
-            report.put(Problem::new(&codes::NOT_CARRIED, stmt.at.0, what));
-        }
-        let (mut inputs, outputs) = passed(chart, args, stmt.at.0, report);
-        let mut reads = Reads::default();
-        visit_mut::stmts(&mut inputs, &mut reads);
-        let of_chart = |name: &String| charts.values().any(|c| c.name == *name);
-        if reads.names.iter().any(|n| of_chart(n) || given.written.contains(n)) {
-            let what = say!(
-                "charts of called blocks evolve together, behind this; what it reads of them is of the scan before"
-            );
-            report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, what));
-        }
-        visit_mut::stmts(&mut outputs.clone(), &mut given);
-        program.body.extend(inputs);
-        program.behind.extend(outputs);
+    for chart in charts.values().filter(|c| most.get(c.name.as_str()).is_some_and(|n| *n > 1)) {
+        let what = format!("`{}` is called twice in a scan; its chart evolves once", chart.name);
+        let at = body.iter().filter(|s| most_in(s, &chart.name) > 0).next_back();
+        report.put(Problem::new(&codes::NOT_CARRIED, at.map_or(program.name.at.0, |s| s.at.0), what));
     }
-    let idle = charts.values().filter(|c| !seen.contains(&c.name));
-    idle.map(|c| {
-        let what = say!("the instance `{}` is never called; it is left out", c.name);
+    let mut turns =
+        Turns { charts, report, given: Reads::default(), flags: HashMap::new(), behind: Vec::new() };
+    let mut late = Vec::new();
+    for (number, stmt) in body.into_iter().enumerate() {
+        if last.is_some_and(|last| number > last) {
+            late.push(stmt);
+            continue;
+        }
+        if first.is_some_and(|f| f < number) && !calls(&stmt) {
+            turns.report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, OF_BEFORE));
+        }
+        let list = turns.list(vec![stmt], false);
+        program.body.extend(list);
+    }
+    program.behind.append(&mut turns.behind);
+    program.behind.append(&mut late);
+    let flags = turns.flags;
+    let mut reset: Vec<&Chart> = charts.values().filter(|c| flags.contains_key(&c.name)).collect();
+    reset.sort_by(|a, b| b.name.cmp(&a.name));
+    for chart in reset {
+        let at = program.name.at.0;
+        let flag = nodes::name(&[&chart.name, &chart.flag], at);
+        program.body.insert(0, nodes::assign(flag, nodes::boolean(false, at), at));
+    }
+    let mut idle = HashSet::new();
+    for chart in charts.values().filter(|c| most.get(c.name.as_str()) == Some(&0)) {
+        let what = format!("the instance `{}` is never called; it is left out", chart.name);
         report.put(Problem::new(&codes::LEFT_OUT, program.name.at.0, what));
-        c.name.clone()
-    })
-    .collect()
+        idle.insert(chart.name.clone());
+    }
+    (idle, flags)
 }
 
-/// Reports calls within a statement: there the chart stands still in some scans.
-fn within(stmt: &Stmt, charts: &HashMap<String, Chart>, seen: &mut HashSet<String>, report: &mut Report) {
-    let mut look = |list: &[Stmt]| {
-        for stmt in list {
-            if let StmtKind::Call(path, _) = &stmt.kind
-                && let Some(chart) = charts.values().find(|c| *c.name == *path.text())
-            {
-                let what = say!(
-                    "`{}` is called on a condition, so its chart stands still in some scans; it is carried over where it is called in every scan",
-                    chart.name
-                );
-                report.put(Problem::new(&codes::NOT_CARRIED, stmt.at.0, what));
-                seen.insert(chart.name.clone());
-            }
-            within(stmt, charts, seen, report);
-        }
-    };
+const OF_BEFORE: &str =
+    "charts of called blocks evolve together, behind this; what it reads of them is of the scan before";
+
+/// The most calls of a chart in one run of a list.
+fn most(list: &[Stmt], chart: &str) -> usize {
+    list.iter().map(|s| most_in(s, chart)).sum()
+}
+
+fn most_in(stmt: &Stmt, chart: &str) -> usize {
     match &stmt.kind {
+        StmtKind::Call(path, _) => usize::from(path.text() == chart),
         StmtKind::If(arms, otherwise) => {
-            arms.iter().for_each(|a| look(&a.1));
-            look(otherwise);
+            arms.iter().map(|a| most(&a.1, chart)).chain([most(otherwise, chart)]).max().unwrap_or(0)
         }
         StmtKind::Case(_, arms, otherwise) => {
-            arms.iter().for_each(|a| look(&a.body));
-            look(otherwise);
+            arms.iter().map(|a| most(&a.body, chart)).chain([most(otherwise, chart)]).max().unwrap_or(0)
         }
-        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => look(body),
-        StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit | StmtKind::Return => {}
+        // A loop can call it again and again.
+        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
+            2 * most(body, chart)
+        }
+        StmtKind::Assign { .. } | StmtKind::Exit | StmtKind::Return => 0,
+    }
+}
+
+/// Puts the assignments of their inputs in the place of calls.
+struct Turns<'c, 'r> {
+    charts: &'c HashMap<String, Chart>,
+    report: &'r mut Report,
+    given: Reads,
+    /// The flags of charts that are called on a condition, by the chart.
+    flags: HashMap<String, String>,
+    /// What runs behind the charts.
+    behind: Vec<Stmt>,
+}
+
+impl Turns<'_, '_> {
+    fn list(&mut self, list: Vec<Stmt>, guarded: bool) -> Vec<Stmt> {
+        let mut made = Vec::new();
+        for mut stmt in list {
+            let charts = self.charts;
+            match &mut stmt.kind {
+                StmtKind::Call(path, args) => {
+                    let text = path.text();
+                    if let Some(chart) = charts.values().find(|c| *c.name == *text) {
+                        let args = std::mem::take(args);
+                        made.extend(self.call(chart, &args, stmt.at.0, guarded));
+                        continue;
+                    }
+                }
+                StmtKind::If(arms, otherwise) => {
+                    arms.iter_mut().for_each(|a| a.1 = self.list(std::mem::take(&mut a.1), true));
+                    *otherwise = self.list(std::mem::take(otherwise), true);
+                }
+                StmtKind::Case(_, arms, otherwise) => {
+                    arms.iter_mut().for_each(|a| a.body = self.list(std::mem::take(&mut a.body), true));
+                    *otherwise = self.list(std::mem::take(otherwise), true);
+                }
+                StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
+                    *body = self.list(std::mem::take(body), true);
+                }
+                StmtKind::Assign { .. } | StmtKind::Exit | StmtKind::Return => {}
+            }
+            made.push(stmt);
+        }
+        made
+    }
+
+    fn call(&mut self, chart: &Chart, args: &[Arg], at: Span, guarded: bool) -> Vec<Stmt> {
+        let (mut inputs, mut outputs) = passed(chart, args, at, self.report);
+        let mut reads = Reads::default();
+        visit_mut::stmts(&mut inputs, &mut reads);
+        let of_chart = |name: &String| self.charts.values().any(|c| c.name == *name);
+        if reads.names.iter().any(|n| of_chart(n) || self.given.written.contains(n)) {
+            self.report.put(Problem::new(&codes::DIFFERENT, at, OF_BEFORE));
+        }
+        visit_mut::stmts(&mut outputs.clone(), &mut self.given);
+        if guarded {
+            let what = format!(
+                "`{}` is called on a condition: its chart evolves behind the body, while it is called",
+                chart.name
+            );
+            self.report.put(Problem::new(&codes::DIFFERENT, at, what));
+            self.flags.insert(chart.name.clone(), chart.flag.clone());
+            let flag = nodes::name(&[&chart.name, &chart.flag], at);
+            inputs.push(nodes::assign(flag.clone(), nodes::boolean(true, at), at));
+            if !outputs.is_empty() {
+                outputs = vec![nodes::when(flag, outputs, Vec::new(), at)];
+            }
+        }
+        self.behind.extend(outputs);
+        inputs
     }
 }
 
@@ -218,7 +343,7 @@ fn passed(chart: &Chart, args: &[Arg], at: Span, report: &mut Report) -> (Vec<St
         };
         let Some(name) = meant else {
             let given = arg.name.as_ref().map_or("", |n| &*n.text);
-            let what = say!("the function block of `{}` has no input `{given}`", chart.name);
+            let what = format!("the function block of `{}` has no input `{given}`", chart.name);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, arg.value.at.0, what));
             continue;
         };

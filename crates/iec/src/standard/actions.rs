@@ -296,6 +296,7 @@ impl<'d> Lower<'d> {
         if all.iter().any(|d| d.condition.is_some()) {
             if let Some(formula) = self.formula(key, &all, &target, span) {
                 let mut list = formula.calls.get(&(drive.step, drive.number)).cloned().unwrap_or_default();
+                list.extend(formula.stored.clone());
                 list.push(nodes::assign(target, formula.value.clone(), span));
                 self.formulas.insert(key, formula);
                 return Some(body_of(Qualifier::N, list, span));
@@ -316,15 +317,14 @@ impl<'d> Lower<'d> {
         if let Some(known) = self.formulas.remove(&key) {
             return Some(known);
         }
-        let fits = |kinds: &[Qualifier]| all.iter().all(|d| kinds.contains(&d.qualifier));
-        let direct = fits(&[Qualifier::N, Qualifier::D, Qualifier::L, Qualifier::P]);
+        let has = |kinds: &[Qualifier]| all.iter().any(|d| kinds.contains(&d.qualifier));
         let program = self.program_of(all.first()?.step.0)?;
-        let here = all.iter().all(|d| self.program_of(d.step.0) == Some(program));
-        if !here || !direct && !fits(&[Qualifier::S, Qualifier::R]) {
+        if !all.iter().all(|d| self.program_of(d.step.0) == Some(program)) {
             return None;
         }
-        let mut on = nodes::boolean(false, span);
-        let mut off = nodes::boolean(false, span);
+        // What holds while its step is active, what sets, and what resets.
+        let none = nodes::boolean(false, span);
+        let mut parts = [none.clone(), none.clone(), none];
         let mut calls = HashMap::new();
         for drive in all {
             let at = At { chart: Some(drive.step.0), program: Some(program), ..At::default() };
@@ -332,15 +332,32 @@ impl<'d> Lower<'d> {
             let mut own = Vec::new();
             let part = self.part(drive, &title, &mut own, span, &at)?;
             calls.insert((drive.step, drive.number), own);
-            let side = if drive.qualifier == Qualifier::R { &mut off } else { &mut on };
+            let [level, on, off] = &mut parts;
+            let side = match drive.qualifier {
+                Qualifier::S => on,
+                Qualifier::R => off,
+                _ => level,
+            };
             *side = nodes::or(side.clone(), part, span);
         }
-        let mut value = on;
-        if !direct {
-            value = nodes::or(target.clone(), value, span);
-            value = nodes::and(value, nodes::not(off, span), span);
+        let [level, on, off] = parts;
+        let open = nodes::not(off, span);
+        let holds = has(&[Qualifier::N, Qualifier::D, Qualifier::L, Qualifier::P]);
+        if !holds {
+            let value = nodes::and(nodes::or(target.clone(), on, span), open, span);
+            return Some(Formula { value, stored: None, calls });
         }
-        Some(Formula { value, calls })
+        if !has(&[Qualifier::S]) {
+            return Some(Formula { value: nodes::and(level, open, span), stored: None, calls });
+        }
+        // What is set stays in a memory of its own, so that it outlives the other parts, and they do not set it.
+        let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
+        let memory =
+            nodes::name(&[&self.fresh(Some(program), &format!("{own}_set"), Type::Bool, span)], span);
+        let kept = nodes::and(nodes::or(memory.clone(), on, span), open.clone(), span);
+        let stored = Some(nodes::assign(memory.clone(), kept, span));
+        let value = nodes::and(nodes::or(level, memory, span), open, span);
+        Some(Formula { value, stored, calls })
     }
 
     /// An action on clearing runs with the step behind or before its transition, if that step has

@@ -11,7 +11,7 @@ use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
 
 /// The longest chain of constants that refer to constants.
-const MOST_CONSTANTS: usize = 20;
+pub(super) const MOST_CONSTANTS: usize = 20;
 /// The deepest nesting of macro-steps.
 const DEEPEST: usize = 20;
 
@@ -45,6 +45,9 @@ impl<'d> Lower<'d> {
             }
             ExprKind::Unary(op, inner) => ExprKind::Unary(*op, Box::new(self.expr(inner, at))),
             ExprKind::Binary(op, a, b) => {
+                if let Some(e) = self.tenths(*op, a, b, span, at) {
+                    return e;
+                }
                 ExprKind::Binary(*op, Box::new(self.expr(a, at)), Box::new(self.expr(b, at)))
             }
             ExprKind::Timer { t1, e: inner, t2 } => {
@@ -258,7 +261,7 @@ impl<'d> Lower<'d> {
         self.folded(decl.init.as_ref()?, key.0, depth.checked_sub(1)?)
     }
 
-    fn folded(&self, e: &Expr, chart: Option<usize>, depth: usize) -> Option<Expr> {
+    pub(super) fn folded(&self, e: &Expr, chart: Option<usize>, depth: usize) -> Option<Expr> {
         match &e.kind {
             ExprKind::Literal(_) => Some(e.clone()),
             ExprKind::Unary(UnaryOp::Neg, inner) => {

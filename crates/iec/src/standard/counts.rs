@@ -11,13 +11,17 @@ use g7_model::{
     Type, Work, say,
 };
 
-use super::bodies::At;
+use super::bodies::{At, MOST_CONSTANTS};
 use super::lower::Lower;
 use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
 
 /// The most that a step time counts, which is an INT, and the most scans that are counted for its seconds.
 const MOST: [i128; 2] = [32_767, 2_147_483_647];
+
+/// The unit of `%X1.T`, and the number at which it stays.
+const TENTH: Nanos = Nanos::from_millis(100);
+const MOST_TENTHS: i64 = 9998;
 
 /// No step is active for longer, as far as blocks that count its time can tell: some 27 years.
 pub(crate) const LONGEST: Nanos = Nanos::from_millis(10_000 * 86_400_000);
@@ -84,6 +88,42 @@ impl<'d> Lower<'d> {
         self.looking.push(nodes::when(active, vec![now], Vec::new(), span));
         self.clocks.insert(step, time);
         value
+    }
+
+    /// `%X1.T` against a number: the time of the step against so many tenths of a second. Alone it has no exact form,
+    /// because conversions of times to numbers count in units of the maker's choice.
+    pub(super) fn tenths(
+        &mut self,
+        op: BinaryOp,
+        a: &Expr,
+        b: &Expr,
+        span: Span,
+        at: &At<'d>,
+    ) -> Option<Expr> {
+        let of = |e: &Expr| match &e.kind {
+            ExprKind::Direct(address) => self.scopes.direct_step(address.strip_suffix(".T")?),
+            _ => None,
+        };
+        let (step, number, op) = match (of(a), of(b)) {
+            (Some(step), None) => (step, b, op),
+            (None, Some(step)) => (step, a, turned(op)),
+            _ => return None,
+        };
+        let value = self.folded(number, at.chart, MOST_CONSTANTS)?;
+        let ExprKind::Literal(Literal::Int(n, _)) = value.kind else { return None };
+        let n = i64::try_from(n).ok().filter(|n| (0..MOST_TENTHS).contains(n) && !at.function)?;
+        let time = self.time_of(step, span, at);
+        let against = |op, n: i64| nodes::binary(op, time.clone(), nodes::time(TENTH * n, span), span);
+        let (from, below) = (|n| against(BinaryOp::Ge, n), |n| against(BinaryOp::Lt, n));
+        Some(match op {
+            BinaryOp::Ge => from(n),
+            BinaryOp::Gt => from(n + 1),
+            BinaryOp::Lt => below(n),
+            BinaryOp::Le => below(n + 1),
+            BinaryOp::Eq => nodes::and(from(n), below(n + 1), span),
+            BinaryOp::Ne => nodes::or(below(n), from(n + 1), span),
+            _ => return None,
+        })
     }
 
     /// A variable as it was before the actions and bodies of the scan.
@@ -159,6 +199,17 @@ impl<'d> Lower<'d> {
             }
         }
         all
+    }
+}
+
+/// The comparison with its operands in the other order.
+fn turned(op: BinaryOp) -> BinaryOp {
+    match op {
+        BinaryOp::Lt => BinaryOp::Gt,
+        BinaryOp::Le => BinaryOp::Ge,
+        BinaryOp::Gt => BinaryOp::Lt,
+        BinaryOp::Ge => BinaryOp::Le,
+        same => same,
     }
 }
 

@@ -114,6 +114,8 @@ pub(super) struct Drive<'d> {
 /// The value of a variable with conditions, with one part for each of its actions.
 pub(super) struct Formula {
     pub(super) value: Expr,
+    /// The assignment of the memory of what is set, which comes first.
+    pub(super) stored: Option<Stmt>,
     /// The calls that a part needs first, by step and number of the action.
     pub(super) calls: HashMap<(StepKey, usize), Vec<Stmt>>,
 }

@@ -22,6 +22,7 @@ mod assemble;
 mod bodies;
 mod counts;
 mod identifiers;
+mod idle;
 mod lower;
 mod macros;
 mod scopes;
@@ -34,6 +35,7 @@ use g7_model::{Document, Problem};
 use crate::signs;
 
 pub(crate) use counts::LONGEST;
+pub(crate) use idle::without_idle;
 pub(crate) use lower::Form;
 use lower::Lower;
 
@@ -46,8 +48,9 @@ pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Proble
     loop {
         let known = read_twins.len();
         let mut lower = Lower::new(document, form, shared, read_twins);
-        let out = lower.document();
+        let mut out = lower.document();
         if lower.wanted.is_subset(&lower.shared) && lower.read_twins.len() == known {
+            without_idle(&mut out);
             return (out, lower.finish());
         }
         read_twins = std::mem::take(&mut lower.read_twins);

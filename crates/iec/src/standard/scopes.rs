@@ -253,16 +253,27 @@ impl<'d> Scopes<'d> {
         })
     }
 
-    /// `X12`, `XM3` as a direct name: a step of the first chart.
+    /// `X12`, `XM3` as a direct name: a step of the first chart. `X3.12`, `X3.IN`, `X3.OUT`: one of the expansion of
+    /// a macro-step.
     pub(super) fn direct_step(&self, text: &str) -> Option<StepKey> {
         let first = self.charts.iter().position(|c| c.kind == ChartKind::Chart)?;
         let name = text.strip_prefix('X')?;
+        let macro_step = |number: &str| {
+            let names = [number.to_owned(), format!("M{number}")];
+            let step = names.iter().find_map(|n| self.find(None, Some(first), n))?;
+            self.expansion(step).map(|inner| (step, inner))
+        };
+        if let Some((outer, inside)) = name.split_once('.') {
+            let (_, inner) = macro_step(outer)?;
+            let of_kind = |kind: StepKind| self.steps_of(inner).find(|(_, s)| s.kind == kind).map(|(k, _)| k);
+            return match inside {
+                "IN" => of_kind(StepKind::Entry),
+                "OUT" => of_kind(StepKind::Exit),
+                _ => self.step_in(inner, inside),
+            };
+        }
         match name.strip_prefix('M') {
-            Some(number) => {
-                let names = [number.to_owned(), format!("M{number}")];
-                let step = names.iter().find_map(|n| self.find(None, Some(first), n))?;
-                self.expansion(step).map(|_| step)
-            }
+            Some(number) => macro_step(number).map(|(step, _)| step),
             None => self.step_in(first, name),
         }
     }

@@ -212,6 +212,55 @@ fn conditions_of_actions_become_bodies() {
 }
 
 #[test]
+fn a_condition_beside_set_and_reset_has_a_memory() {
+    becomes(
+        "input a : BOOL  output q : BOOL
+         chart G { initial step S1 { N q if a }  step S2 { S q }  step S3 { R q }  S1 -> S2 when a  S2 -> S3 when a }",
+        "input a : BOOL  output q : BOOL  var q_set : BOOL
+         chart G {
+           initial step S1 { N { q_set := (q_set or S2.X) and not S3.X  q := (S1.X and a or q_set) and not S3.X } }
+           step S2 { N { q_set := (q_set or S2.X) and not S3.X  q := (S1.X and a or q_set) and not S3.X } }
+           step S3 { N { q_set := (q_set or S2.X) and not S3.X  q := (S1.X and a or q_set) and not S3.X } }
+           S1 -> S2 when a  S2 -> S3 when a
+         }",
+    );
+}
+
+#[test]
+fn tenths_of_a_step_against_a_number_are_its_time() {
+    becomes(
+        "chart G { initial step 1  step 2  1 -> 2 when %X1.T >= 20  2 -> 1 when 15 < %X2.T and %X2.T <> 30 }",
+        "chart G {
+           initial step Step1  step Step2
+           Step1 -> Step2 when Step1.t >= 2s
+           Step2 -> Step1 when Step2.t >= 1600ms and (Step2.t < 3s or Step2.t >= 3100ms)
+         }",
+    );
+}
+
+#[test]
+fn guarded_parts_without_statements_are_left_out() {
+    becomes(
+        "input a, b : BOOL  var n : INT
+         chart G {
+           initial step S1 {
+             N { if a then elsif b then n := 1 else n := 2 end_if  if b then end_if  n := 3 }
+             N { case n of 1: 2: n := 4 else n := 5 end_case }
+             N { case n of 1: 2: n := 4 end_case  if a then n := 6 elsif b then end_if }
+           }
+         }",
+        "input a : BOOL  input b : BOOL  var n : INT
+         chart G {
+           initial step S1 {
+             N { if not a then if b then n := 1 else n := 2 end_if end_if  n := 3 }
+             N { if not (n = 1) then case n of 2: n := 4 else n := 5 end_case end_if }
+             N { case n of 2: n := 4 end_case  if a then n := 6 end_if }
+           }
+         }",
+    );
+}
+
+#[test]
 fn sources_and_sinks_have_steps() {
     let there = document(
         "profile iec61131\ninput a : BOOL\nchart G { initial step S1  () -> S1 when a  S1 -> () when a }",
@@ -228,7 +277,7 @@ fn what_has_no_form_is_told_with_its_place() {
 input a : BOOL
 output q : BOOL
 chart G {
-  initial step A { S q if a  N q }
+  initial step A { SD 1s q if a  N q }
   step B { force H := {} }
   A -> B when Full(1) on clearing { q := a }
   A -> B when not a
@@ -240,7 +289,7 @@ function Full(n : INT) : BOOL { Full := a }
 ";
     let written = support::export("plcopen", &document(text));
     for (part, words) in [
-        ("S q if a", "the condition of an action"),
+        ("SD 1s q if a", "the condition of an action"),
         ("force H", "a forcing order"),
         ("{ q := a }", "an action on clearing"),
         ("C }", "an enclosing step"),

@@ -66,8 +66,10 @@ fn each_instance_is_a_chart_of_its_own() {
 
 #[test]
 fn calls_that_run_otherwise_are_told() {
-    let cases: [(&str, &str, &str); 6] = [
-        ("IF go THEN fb0(start := go); END_IF; fb1();", "G0604", "called on a condition"),
+    let cases: [(&str, &str, &str); 8] = [
+        ("IF go THEN fb0(start := go); END_IF; fb1();", "G0614", "called on a condition"),
+        ("IF go THEN fb0(); END_IF; fb0(); fb1();", "G0604", "called twice"),
+        ("WHILE go DO fb0(); go := FALSE; END_WHILE; fb1();", "G0604", "called twice"),
         ("fb0(start := go); fb0(start := go); fb1();", "G0604", "called twice"),
         ("fb0(start := go);", "G0605", "`fb1` is never called"),
         ("fb0(go); fb1(start := fb0.turning);", "G0614", "of the scan before"),
@@ -82,4 +84,34 @@ fn calls_that_run_otherwise_are_told() {
     }
     let (_, problems) = program("fb0(stop := go); fb1();");
     assert_eq!(told(&problems), [("G0607", "the function block of `fb0` has no input `stop`")]);
+}
+
+#[test]
+fn a_chart_that_is_called_on_a_condition_waits() {
+    let (found, _) =
+        program("IF go THEN fb0(start := both, turning => lamp); ELSE fb0(FALSE); END_IF; fb1();");
+    let text = g7_syntax::print(&found, None);
+    for part in [
+        "fb0.Called := FALSE",
+        "fb0.start := both\n    fb0.Called := TRUE",
+        "if fb0.Called then",
+        "Rest -> Run when Called and start",
+    ] {
+        assert!(text.to_lowercase().contains(&part.to_lowercase()), "{part} in {text}");
+    }
+    let (compiled, problems) = g7_compile::compile(&found);
+    assert!(compiled.is_some(), "{problems:?}");
+    assert!(!text.contains("fb1.Called"), "{text}");
+}
+
+#[test]
+fn a_global_instance_belongs_to_the_program_that_uses_it() {
+    let text = format!(
+        "{BLOCK}PROGRAM Main VAR_EXTERNAL fb : Feeder; go : BOOL; END_VAR fb(start := go); END_PROGRAM
+         CONFIGURATION c VAR_GLOBAL fb : Feeder; go : BOOL; END_VAR RESOURCE r ON PLC
+         TASK t(INTERVAL := T#10ms, PRIORITY := 0); PROGRAM i WITH t : Main; END_RESOURCE END_CONFIGURATION"
+    );
+    let (found, problems) = import(text.as_bytes(), FileId(0));
+    assert_eq!(told(&problems), []);
+    assert!(g7_syntax::print(&found, None).contains("chart fb {"), "{}", g7_syntax::print(&found, None));
 }

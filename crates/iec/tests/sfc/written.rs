@@ -84,7 +84,7 @@ fn what_has_no_form_is_told_with_its_place() {
 input a : BOOL
 output q : BOOL
 chart G {
-  initial step A { S q if a  N q }
+  initial step A { SD 1s q if a  N q }
   step B { force H := {} }
   A -> B when a on clearing { q := a }
   A -> B when not a
@@ -98,7 +98,7 @@ chart H every 3s { initial step C  step D  C -> D when ↑a }
         let hit = |p: &&g7_model::Problem| p.at.start <= at && at < p.at.end && p.what.contains(words);
         assert!(written.problems.iter().any(|p| hit(&p)), "{part}: {:?}", written.problems);
     };
-    told("S q if a", "the condition of an action");
+    told("SD 1s q if a", "the condition of an action");
     told("force H", "an order");
     told("{ q := a }", "an action on clearing");
     told("↑a", "an edge in a chart with a period of its own");
@@ -309,6 +309,28 @@ fn a_step_that_is_not_read_may_have_the_name_of_a_standard_function() {
         let written = export(&document(&FUNCTIONS.replace(from, to)));
         let told: Vec<_> = written.problems.iter().map(|p| &*p.what).collect();
         assert!(told.iter().any(|t| t.contains(expected)), "{expected}: {told:?}");
+    }
+}
+
+/// matiec wants a variable in each program, and has no global text with a length.
+#[test]
+fn programs_have_a_variable_and_texts_stand_where_they_are_used() {
+    let alone = export(&document("profile iec61131\nchart G { initial step A  step B  A -> B when true }"));
+    assert!(alone.text.starts_with("PROGRAM G\n  VAR\n    Unused : BOOL;\n  END_VAR\n"), "{}", alone.text);
+    let several = export(&document(
+        "profile iec61131\ninput a : BOOL\nvar s : STRING(20)\nvar t : STRING(30) := 'x'\nvar u : STRING(40)\n\
+         pre { u := 'y' }\nchart G { initial step A { N { s := u } }  step B  A -> B when a }",
+    ));
+    for part in [
+        "    s : STRING[20];\n    t : STRING[30] := 'x';",
+        "    u : STRING;\n  END_VAR\n\n  u :=",
+        "VAR_GLOBAL\n    u : STRING;",
+    ] {
+        assert!(several.text.contains(part), "{part} in {}", several.text);
+    }
+    assert!(several.problems.iter().any(|p| p.what.contains("`u` is a STRING")), "{:?}", several.problems);
+    if let Some(matiec) = g7_peers::matiec() {
+        assert_eq!(compile(&matiec, &alone.text), Ok(()), "{}", alone.text);
     }
 }
 

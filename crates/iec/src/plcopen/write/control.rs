@@ -85,6 +85,7 @@ impl Control<'_> {
         let at = chart.name.at.0;
         never(chart, self.problems);
         self.apart(chart, variables);
+        without_empty(chart);
         let named: HashMap<String, NamedAction> = chart
             .items
             .iter()
@@ -396,6 +397,27 @@ impl Control<'_> {
             reader.memories.insert(key(&step.name.text), memory);
         }
         receptivities(chart, &mut reader);
+    }
+}
+
+/// Leaves out actions that do nothing: Beremiz and matiec want a statement in each.
+fn without_empty(chart: &mut Chart) {
+    let mut empty = HashSet::new();
+    chart.items.retain(|item| match item {
+        ChartItem::Action(a) if a.body.block().statements.is_empty() => {
+            empty.insert(key(&a.name.text));
+            false
+        }
+        _ => true,
+    });
+    for item in &mut chart.items {
+        let ChartItem::Step(step) = item else { continue };
+        step.actions.retain(|a| match drive_target(a) {
+            Some(Target::Path(path)) => !empty.contains(&key(&path.text())),
+            Some(Target::Work(work)) => !work.statements().is_empty(),
+            _ => true,
+        });
+        step.braces = !step.actions.is_empty();
     }
 }
 

@@ -8,10 +8,12 @@ mod chart;
 
 use std::collections::HashSet;
 
-use g7_model::{Body, Chart, Document, Expr, Function, Item, Nanos, Problem, Type, VarDecl, VarKind};
+use g7_model::{
+    Body, Chart, Document, Expr, Function, Item, Nanos, Problem, Span, Type, VarDecl, VarKind, codes,
+};
 
 use crate::Written;
-use crate::nodes::Taken;
+use crate::nodes::{self, Taken};
 use crate::st::{Known, Writer};
 use crate::standard::{Form, standard};
 
@@ -59,12 +61,14 @@ impl<'d> Exporter<'d> {
         let globals: Vec<&VarDecl> =
             document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some(v) } else { None }).collect();
         let used: Vec<HashSet<&str>> = programs.iter().map(|p| words(&p.body)).collect();
-        for (program, own) in programs.iter().zip(&used) {
+        let first = programs.iter().position(|p| p.chart.is_some()).unwrap_or(0);
+        for (number, (program, own)) in programs.iter().zip(&used).enumerate() {
             let mut declarations = Declarations::default();
             for decl in &globals {
                 for name in &decl.names {
                     let text = &*name.text;
-                    if alone || local(decl, text, &used) && own.contains(text) {
+                    let idle = number == first && !used.iter().any(|u| u.contains(text));
+                    if alone || local(decl, text, &used) && (own.contains(text) || idle) {
                         declarations.own(decl, text);
                     } else if !local(decl, text, &used) && own.contains(text) {
                         declarations.external(decl, text);
@@ -84,6 +88,11 @@ impl<'d> Exporter<'d> {
                     declarations.external(decl, &name.text);
                 }
             }
+            if declarations.sections.is_empty() {
+                let at = program.chart.map_or(Span::default(), |c| c.name.at.0);
+                declarations
+                    .own(&nodes::variable(VarKind::Var, "", Type::Bool, at), &self.taken.give("Unused"));
+            }
             let body = if program.body.is_empty() { "  ;\n" } else { &program.body };
             text.push_str(&format!(
                 "PROGRAM {}\n{}\n{body}END_PROGRAM\n",
@@ -97,6 +106,13 @@ impl<'d> Exporter<'d> {
         let mut shared = Declarations::default();
         for decl in globals.iter().filter(|_| !alone) {
             for name in decl.names.iter().filter(|n| !local(decl, &n.text, &used)) {
+                if decl.ty != Type::STRING && matches!(decl.ty, Type::String(_)) {
+                    let what = format!(
+                        "`{}` is a STRING of several programs, which compilers take without a length alone",
+                        name.text
+                    );
+                    self.problems.push(Problem::new(&codes::DIFFERENT, decl.at.0, what));
+                }
                 shared.global(decl, &name.text);
             }
         }
@@ -200,9 +216,9 @@ impl<'d> Exporter<'d> {
 }
 
 /// A function block that only one program uses is declared there, because few tools allow global
-/// ones.
+/// ones, and so is a text, because the standard has no length of one that is external.
 fn local(decl: &VarDecl, name: &str, used: &[HashSet<&str>]) -> bool {
-    matches!(decl.ty, Type::Fb(_)) && used.iter().filter(|u| u.contains(name)).count() < 2
+    matches!(decl.ty, Type::Fb(_) | Type::String(_)) && used.iter().filter(|u| u.contains(name)).count() < 2
 }
 
 /// The set of words in a text.
@@ -266,7 +282,7 @@ impl Declarations {
             VarKind::Var if decl.retain => "VAR_GLOBAL RETAIN",
             VarKind::Var => "VAR_GLOBAL",
         };
-        self.add(section, line(decl, name));
+        self.add(section, line_of(decl, name, shared_type(decl.ty)));
     }
 
     /// The same variable, as a program refers to it.
@@ -275,7 +291,7 @@ impl Declarations {
             VarKind::Const => "VAR_EXTERNAL CONSTANT",
             _ => "VAR_EXTERNAL",
         };
-        self.add(section, format!("{name} : {};", type_name(decl.ty)));
+        self.add(section, format!("{name} : {};", shared_type(decl.ty)));
     }
 
     fn print(&self, indent: usize) -> String {
@@ -292,9 +308,18 @@ impl Declarations {
     }
 }
 
+/// A type as variables of several programs have it: without the length of a text.
+fn shared_type(ty: Type) -> String {
+    if matches!(ty, Type::String(_)) { "STRING".to_string() } else { type_name(ty) }
+}
+
 fn line(decl: &VarDecl, name: &str) -> String {
+    line_of(decl, name, type_name(decl.ty))
+}
+
+fn line_of(decl: &VarDecl, name: &str, ty: String) -> String {
     let at = decl.address.as_ref().map_or(String::new(), |a| format!(" AT {}", a.text));
     let init = initial(decl.init.as_ref(), decl.ty);
     let comment = decl.comment.as_ref().map_or(String::new(), |c| format!(" (* {} *)", clean(c)));
-    format!("{name}{at} : {}{init};{comment}", type_name(decl.ty))
+    format!("{name}{at} : {ty}{init};{comment}")
 }
