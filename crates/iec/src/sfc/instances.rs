@@ -11,7 +11,7 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
-use g7_model::{Arg, Name, Path, Problem, Span, Stmt, StmtKind, Type, VarKind, codes};
+use g7_model::{Arg, Name, Path, Problem, Said, Span, Stmt, StmtKind, Type, VarKind, codes, say};
 
 use super::unit::{Instance, Part, Source, Unit, UnitKind};
 use crate::nodes::{self, Taken};
@@ -53,14 +53,14 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
             used.insert(block.name.text.to_uppercase());
             let size = block.parts.len() + block.vars.len() + 1;
             if size > left {
-                let what = "more instances of function blocks than are read";
+                let what = say!("more instances of function blocks than are read");
                 report.put(Problem::new(&codes::TOO_LARGE, variable.decl.at.0, what));
                 continue;
             }
             left -= size;
             let own = taken.give(&name.text);
             if own != *name.text {
-                let what = format!("something else is called `{}`; the chart is called `{own}`", name.text);
+                let what = say!("something else is called `{}`; the chart is called `{own}`", name.text);
                 report.put(Problem::new(&codes::RENAMED, name.at.0, what));
             }
             let given = block.vars.iter().filter(|v| v.section == Section::Input);
@@ -168,8 +168,9 @@ fn instance(block: &Unit, name: Name, report: &mut Report) -> Unit {
     unit.name = name;
     for variable in &mut unit.vars {
         if variable.section == Section::InOut {
-            let what =
-                "a variable of both directions of a block with a chart: nothing outside is changed by it";
+            let what = say!(
+                "a variable of both directions of a block with a chart: nothing outside is changed by it"
+            );
             report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         }
         if matches!(variable.section, Section::Input | Section::Output | Section::InOut) {
@@ -197,11 +198,11 @@ fn split(
     let last = body.iter().rposition(calls);
     let first = body.iter().position(calls);
     if last.is_some() && super::blocks::returns(&body, true) {
-        let what = "RETURN in a program that calls a chart: the chart would evolve behind it";
+        let what = say!("RETURN in a program that calls a chart: the chart would evolve behind it");
         report.put(Problem::new(&codes::NOT_CARRIED, program.name.at.0, what));
     }
     for chart in charts.values().filter(|c| most.get(c.name.as_str()).is_some_and(|n| *n > 1)) {
-        let what = format!("`{}` is called twice in a scan; its chart evolves once", chart.name);
+        let what = say!("`{}` is called twice in a scan; its chart evolves once", chart.name);
         let at = body.iter().filter(|s| most_in(s, &chart.name) > 0).next_back();
         report.put(Problem::new(&codes::NOT_CARRIED, at.map_or(program.name.at.0, |s| s.at.0), what));
     }
@@ -214,7 +215,7 @@ fn split(
             continue;
         }
         if first.is_some_and(|f| f < number) && !calls(&stmt) {
-            turns.report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, OF_BEFORE));
+            turns.report.put(Problem::new(&codes::DIFFERENT, stmt.at.0, of_before()));
         }
         let list = turns.list(vec![stmt], false);
         program.body.extend(list);
@@ -231,15 +232,17 @@ fn split(
     }
     let mut idle = HashSet::new();
     for chart in charts.values().filter(|c| most.get(c.name.as_str()) == Some(&0)) {
-        let what = format!("the instance `{}` is never called; it is left out", chart.name);
+        let what = say!("the instance `{}` is never called; it is left out", chart.name);
         report.put(Problem::new(&codes::LEFT_OUT, program.name.at.0, what));
         idle.insert(chart.name.clone());
     }
     (idle, flags)
 }
 
-const OF_BEFORE: &str =
-    "charts of called blocks evolve together, behind this; what it reads of them is of the scan before";
+/// Told of a statement between calls of charts.
+fn of_before() -> Said {
+    say!("charts of called blocks evolve together, behind this; what it reads of them is of the scan before")
+}
 
 /// The most calls of a chart in one run of a list.
 fn most(list: &[Stmt], chart: &str) -> usize {
@@ -312,11 +315,11 @@ impl Turns<'_, '_> {
         visit_mut::stmts(&mut inputs, &mut reads);
         let of_chart = |name: &String| self.charts.values().any(|c| c.name == *name);
         if reads.names.iter().any(|n| of_chart(n) || self.given.written.contains(n)) {
-            self.report.put(Problem::new(&codes::DIFFERENT, at, OF_BEFORE));
+            self.report.put(Problem::new(&codes::DIFFERENT, at, of_before()));
         }
         visit_mut::stmts(&mut outputs.clone(), &mut self.given);
         if guarded {
-            let what = format!(
+            let what = say!(
                 "`{}` is called on a condition: its chart evolves behind the body, while it is called",
                 chart.name
             );
@@ -343,7 +346,7 @@ fn passed(chart: &Chart, args: &[Arg], at: Span, report: &mut Report) -> (Vec<St
         };
         let Some(name) = meant else {
             let given = arg.name.as_ref().map_or("", |n| &*n.text);
-            let what = format!("the function block of `{}` has no input `{given}`", chart.name);
+            let what = say!("the function block of `{}` has no input `{given}`", chart.name);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, arg.value.at.0, what));
             continue;
         };

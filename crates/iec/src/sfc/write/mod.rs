@@ -9,7 +9,7 @@ mod chart;
 use std::collections::HashSet;
 
 use g7_model::{
-    Body, Chart, Document, Expr, Function, Item, Nanos, Problem, Span, Type, VarDecl, VarKind, codes,
+    Body, Chart, Document, Expr, Function, Item, Nanos, Problem, Span, Type, VarDecl, VarKind, codes, say,
 };
 
 use crate::Written;
@@ -107,7 +107,7 @@ impl<'d> Exporter<'d> {
         for decl in globals.iter().filter(|_| !alone) {
             for name in decl.names.iter().filter(|n| !local(decl, &n.text, &used)) {
                 if decl.ty != Type::STRING && matches!(decl.ty, Type::String(_)) {
-                    let what = format!(
+                    let what = say!(
                         "`{}` is a STRING of several programs, which compilers take without a length alone",
                         name.text
                     );
