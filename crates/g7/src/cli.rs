@@ -36,7 +36,7 @@ pub(crate) struct Cli {
     /// When to use colours.
     #[arg(long, global = true, value_enum, default_value_t = Color::Auto, value_name = "WHEN")]
     pub(crate) color: Color,
-    /// The language of messages about charts; without it, that of LC_ALL, LC_MESSAGES or LANG.
+    /// The language of messages about charts and of the pages of `explain`; without it, that of LC_ALL, LC_MESSAGES or LANG.
     #[arg(long, global = true, value_enum, value_name = "LANGUAGE")]
     pub(crate) lang: Option<crate::tongue::Tongue>,
     #[command(subcommand)]
@@ -539,9 +539,6 @@ pub(crate) struct Explain {
     /// The code, as in `error[G0101]`.
     #[arg(value_parser = values::problem_codes(), hide_possible_values = true)]
     pub(crate) code: Option<String>,
-    /// The language: en, fr or pt [default: that of LC_ALL, LC_MESSAGES or LANG].
-    #[arg(long, value_name = "LANGUAGE", value_parser = ["en", "fr", "pt"], hide_possible_values = true)]
-    pub(crate) lang: Option<String>,
 }
 
 #[derive(Args, Debug)]

@@ -2,23 +2,24 @@
 
 use std::io::Write;
 
+use g7_model::Language;
 use g7_model::codes::{self, Code};
 
 use crate::cli::Explain;
 use crate::failure::{Failure, Verdict};
-use crate::style;
+use crate::{style, tongue};
 
 pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
     let mut out = anstream::stdout().lock();
-    let language = args.lang.clone().or_else(spoken).unwrap_or_default();
+    let language = tongue::language();
     let Some(id) = &args.code else {
         for code in codes::ALL {
-            let (sort, title) = (code.severity.name(), title(code, &language));
+            let (sort, title) = (code.severity.name(), title(code, language));
             writeln!(out, "{}{}{:#}  {sort:<7}  {title}", style::STRONG, code.id, style::STRONG)?;
         }
         return Ok(out.flush().map(|()| Verdict::Fine)?);
     };
-    let Some(text) = g7_page::explain(id, &language) else {
+    let Some(text) = g7_page::explain(id, language) else {
         return Err(Failure::Usage(format!("there is no problem `{id}`; `g7 explain` lists them all")));
     };
     write!(out, "{text}")?;
@@ -26,16 +27,8 @@ pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
 }
 
 /// The title of a code, as its page has it behind the code: `# G0101: a chart that never starts`.
-fn title(code: &Code, language: &str) -> String {
+fn title(code: &Code, language: Language) -> String {
     let page = g7_page::explain(code.id, language).unwrap_or_default();
     let heading = page.lines().next().and_then(|line| line.split_once(code.id));
     heading.map_or(code.title, |(_, title)| title.trim_start_matches([' ', ':'])).to_owned()
-}
-
-/// The language of the user's messages, as the environment has it.
-fn spoken() -> Option<String> {
-    ["LC_ALL", "LC_MESSAGES", "LANG"]
-        .into_iter()
-        .filter_map(|name| std::env::var(name).ok())
-        .find(|v| !v.is_empty())
 }

@@ -92,7 +92,8 @@ impl Page {
             }
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
             Request::Explain { code } => {
-                let text = explain(&code, "en").ok_or_else(|| format!("there is no problem `{code}`"))?;
+                let text = explain(&code, g7_model::Language::English)
+                    .ok_or_else(|| format!("there is no problem `{code}`"))?;
                 ok(&serde_json::json!({ "markdown": text }))
             }
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),

@@ -37,7 +37,7 @@ fn rule(code: &Code) -> Value {
         "shortDescription": { "text": code.title_in(language()) },
         "defaultConfiguration": { "level": code.severity.name() },
     });
-    if let Some(page) = g7_page::explain(code.id, "en") {
+    if let Some(page) = g7_page::explain(code.id, g7_model::Language::English) {
         rule["help"] = json!({ "text": page, "markdown": page });
     }
     rule
