@@ -319,9 +319,9 @@ impl Turns<'_, '_> {
         }
         visit_mut::stmts(&mut outputs.clone(), &mut self.given);
         if guarded {
+            let title = &chart.name;
             let what = say!(
-                "`{}` is called on a condition: its chart evolves behind the body, while it is called",
-                chart.name
+                "`{title}` is called on a condition: its chart evolves behind the body, while it is called"
             );
             self.report.put(Problem::new(&codes::DIFFERENT, at, what));
             self.flags.insert(chart.name.clone(), chart.flag.clone());
