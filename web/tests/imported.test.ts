@@ -58,7 +58,7 @@ for (const [ending, file] of ENDINGS) {
     await page.keyboard.press('Control+End');
     await page.keyboard.type('// a letter');
     await text.getByText('// a letter').waitFor();
-    // What was typed on the way, a lone stroke, is an error; the drawing is that of the present text again.
+    // A lone stroke, typed on the way, is an error; the drawing is that of the present text again.
     await until(async () => (await page.locator('.cm-lint-marker-error').count()) === 0 && (await page.getByText(/there is no chart/).count()) === 0, `${file}: errors in the text`);
     await drawn(page);
     assert.equal(await ids(), before);

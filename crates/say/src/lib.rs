@@ -3,7 +3,7 @@
 //! `model` hands it on; every check and every reader of files words its problems with it. The text as it
 //! stands in the source is the key of the row in the table of languages (`crates/model/src/said`).
 //!
-//! What must hold: a hole in back-ticks takes whatever can be shown, for it is a name or a piece of
+//! It must hold: a hole in back-ticks takes whatever can be shown, for it is a name or a piece of
 //! somebody's text. A hole elsewhere takes a number, a type or another text made by `say!`; a word of English
 //! that no table knows does not compile there.
 #![forbid(unsafe_code)]

@@ -5,7 +5,7 @@
 pub(crate) struct Hole {
     /// The name in it; empty if the next argument fills it.
     pub name: String,
-    /// What stands behind the colon.
+    /// The form behind the colon.
     pub form: String,
     /// True if it stands in back-ticks.
     pub quoted: bool,

@@ -203,7 +203,7 @@ fn split(
     }
     for chart in charts.values().filter(|c| most.get(c.name.as_str()).is_some_and(|n| *n > 1)) {
         let what = say!("`{}` is called twice in a scan; its chart evolves once", chart.name);
-        let at = body.iter().filter(|s| most_in(s, &chart.name) > 0).next_back();
+        let at = body.iter().rfind(|s| most_in(s, &chart.name) > 0);
         report.put(Problem::new(&codes::NOT_CARRIED, at.map_or(program.name.at.0, |s| s.at.0), what));
     }
     let mut turns =
@@ -273,7 +273,7 @@ struct Turns<'c, 'r> {
     given: Reads,
     /// The flags of charts that are called on a condition, by the chart.
     flags: HashMap<String, String>,
-    /// What runs behind the charts.
+    /// The statements that run behind the charts.
     behind: Vec<Stmt>,
 }
 

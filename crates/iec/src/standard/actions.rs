@@ -322,7 +322,7 @@ impl<'d> Lower<'d> {
         if !all.iter().all(|d| self.program_of(d.step.0) == Some(program)) {
             return None;
         }
-        // What holds while its step is active, what sets, and what resets.
+        // The parts that hold while a step is active, those that set, and those that reset.
         let none = nodes::boolean(false, span);
         let mut parts = [none.clone(), none.clone(), none];
         let mut calls = HashMap::new();
@@ -350,7 +350,7 @@ impl<'d> Lower<'d> {
         if !has(&[Qualifier::S]) {
             return Some(Formula { value: nodes::and(level, open, span), stored: None, calls });
         }
-        // What is set stays in a memory of its own, so that it outlives the other parts, and they do not set it.
+        // The value that was set stays in a memory of its own, so that it outlives the other parts, and they do not set it.
         let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
         let memory =
             nodes::name(&[&self.fresh(Some(program), &format!("{own}_set"), Type::Bool, span)], span);

@@ -5,18 +5,21 @@
 //! table beside this file has the words. A plain `String` is no `Said`: what another program or a user wrote
 //! is handed on as [`Said::foreign`].
 
-mod part;
+pub(crate) mod spoken;
 mod table;
 
 use std::borrow::Cow;
 
 use crate::Language;
-pub use part::{Part, Spoken};
 pub use table::{Row, rows};
 
 /// A text, with the template and the parts it was made of.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub struct Said {
+pub struct Said(Box<Made>);
+
+/// Boxed, so that a result with a problem stays small.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]
+struct Made {
     /// As it stands in the source; empty for a foreign text.
     template: &'static str,
     /// In English.
@@ -26,34 +29,34 @@ pub struct Said {
 
 impl Said {
     /// A text without holes. `say!` calls this.
-    pub const fn plain(template: &'static str, text: &'static str) -> Said {
-        Said { template, text: Cow::Borrowed(text), parts: Vec::new() }
+    pub fn plain(template: &'static str, text: &'static str) -> Said {
+        Said(Box::new(Made { template, text: Cow::Borrowed(text), parts: Vec::new() }))
     }
 
     /// A text with its holes filled in their order. `say!` calls this.
     pub fn filled(template: &'static str, parts: Vec<Part>) -> Said {
-        let text = table::fill(template, template, &parts, Language::English);
-        Said { template, text: Cow::Owned(text), parts }
+        let text = table::fill(template, template, &shown(&parts, Language::English));
+        Said(Box::new(Made { template, text: Cow::Owned(text), parts }))
     }
 
     /// The text of another program, of a file or of a user: the same in each language.
     pub fn foreign(text: impl Into<String>) -> Said {
-        Said { template: "", text: Cow::Owned(text.into()), parts: Vec::new() }
+        Said(Box::new(Made { text: Cow::Owned(text.into()), ..Made::default() }))
     }
 
     /// In English.
     pub fn as_str(&self) -> &str {
-        &self.text
+        &self.0.text
     }
 
     /// In a language.
     pub fn in_language(&self, language: Language) -> String {
-        if language == Language::English || self.template.is_empty() {
-            return self.text.clone().into_owned();
+        if language == Language::English || self.0.template.is_empty() {
+            return self.0.text.clone().into_owned();
         }
         // A text of no row stays English; a test finds it.
-        let row = table::in_language(self.template, language).unwrap_or(self.template);
-        table::fill(self.template, row, &self.parts, language)
+        let row = table::in_language(self.0.template, language).unwrap_or(self.0.template);
+        table::fill(self.0.template, row, &shown(&self.0.parts, language))
     }
 }
 
@@ -61,14 +64,42 @@ impl std::ops::Deref for Said {
     type Target = str;
 
     fn deref(&self) -> &str {
-        &self.text
+        &self.0.text
     }
 }
 
 impl std::fmt::Display for Said {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        f.pad(&self.text)
+        f.pad(&self.0.text)
     }
+}
+
+/// The content of a hole.
+#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Part {
+    /// A name, a number, a piece of somebody's text: the same in each language.
+    Raw(String),
+    /// A text with a row of its own.
+    Said(Said),
+}
+
+impl Part {
+    /// A part that stands in back-ticks.
+    pub fn raw(shown: &impl ToString) -> Part {
+        Part::Raw(shown.to_string())
+    }
+
+    fn in_language(&self, language: Language) -> String {
+        match self {
+            Part::Raw(text) => text.clone(),
+            Part::Said(said) => said.in_language(language),
+        }
+    }
+}
+
+/// The parts in a language, by their numbers.
+fn shown(parts: &[Part], language: Language) -> impl Fn(usize) -> Option<String> {
+    move |k| parts.get(k).map(|part| part.in_language(language))
 }
 
 #[cfg(test)]

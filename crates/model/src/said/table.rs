@@ -7,7 +7,6 @@
 use std::collections::HashMap;
 use std::sync::OnceLock;
 
-use super::Part;
 use crate::Language;
 
 /// A text in English, French and Portuguese.
@@ -54,7 +53,7 @@ fn holes(text: &str) -> Vec<&str> {
 }
 
 /// A text with its holes filled. `row` has the holes of `template`, which number the parts.
-pub(super) fn fill(template: &str, row: &str, parts: &[Part], language: Language) -> String {
+pub(super) fn fill(template: &str, row: &str, part: &dyn Fn(usize) -> Option<String>) -> String {
     let names = holes(template);
     let mut unnamed = names.iter().enumerate().filter(|(_, name)| name.is_empty()).map(|(k, _)| k);
     let mut text = String::with_capacity(row.len() + 16);
@@ -69,8 +68,8 @@ pub(super) fn fill(template: &str, row: &str, parts: &[Part], language: Language
             } else {
                 names.iter().position(|n| *n == name)
             };
-            if let Some(part) = rank.and_then(|k| parts.get(k)) {
-                text.push_str(&part.in_language(language));
+            if let Some(part) = rank.and_then(part) {
+                text.push_str(&part);
             }
         }
     });

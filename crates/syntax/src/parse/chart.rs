@@ -12,8 +12,9 @@ use g7_model::{
 const STEP_WORDS: [&str; 6] = ["initial", "entry", "exit", "enclosing", "step", "macro"];
 
 /// A slip that is told in two places: the words, and the way out.
-const STEP_IN_TRANSITION: (Said, Said) =
-    (say!("only the name of the step stands in a transition"), say!("leave out `step`"));
+fn step_in_transition() -> (Said, Said) {
+    (say!("only the name of the step stands in a transition"), say!("leave out `step`"))
+}
 
 impl Parser<'_> {
     /// A chart, an expansion or a task; its first word is in hand.
@@ -154,7 +155,8 @@ impl Parser<'_> {
         }
         let again = self.slice(ahead.token()) == "step";
         if !again {
-            self.slip(self.here(), STEP_IN_TRANSITION.0, STEP_IN_TRANSITION.1);
+            let (what, help) = step_in_transition();
+            self.slip(self.here(), what, help);
         }
         self.bump();
         true
@@ -489,7 +491,8 @@ impl Parser<'_> {
 
     fn step_name(&mut self, what: Said) -> Option<Name> {
         if self.at_word("step") && self.peek().kind != Tok::Arrow {
-            self.slip(self.here(), STEP_IN_TRANSITION.0, STEP_IN_TRANSITION.1);
+            let (what, help) = step_in_transition();
+            self.slip(self.here(), what, help);
             self.bump();
         }
         let at = self.cur.start;

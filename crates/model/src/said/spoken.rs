@@ -1,37 +1,16 @@
-//! What fills a hole of a text.
+//! The parts that may stand among the words of a text.
 
-use super::Said;
-use crate::{FbKind, Language, Nanos, ProfileName, Qualifier, Type};
-
-/// What fills a hole.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Part {
-    /// A name, a number, a piece of somebody's text: the same in each language.
-    Raw(String),
-    /// A text with a row of its own.
-    Said(Said),
-}
+use super::{Part, Said};
+use crate::{FbKind, Nanos, ProfileName, Qualifier, Type};
 
 impl Part {
-    /// What stands in back-ticks.
-    pub fn raw(shown: &impl ToString) -> Part {
-        Part::Raw(shown.to_string())
-    }
-
-    /// What stands among the words.
+    /// A part that stands among the words.
     pub fn spoken(part: &impl Spoken) -> Part {
         part.part()
     }
-
-    pub(super) fn in_language(&self, language: Language) -> String {
-        match self {
-            Part::Raw(text) => text.clone(),
-            Part::Said(said) => said.in_language(language),
-        }
-    }
 }
 
-/// What may stand among the words of a text. A `str` may not: it would stay English.
+/// A part that may stand among the words of a text. A `str` may not: it would stay English.
 pub trait Spoken {
     /// The part that it is.
     fn part(&self) -> Part;
