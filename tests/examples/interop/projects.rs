@@ -92,6 +92,7 @@ fn opened(
     projects: &[(&Chart, String)],
     run: impl Fn(&Table<'_>, &Matiec, &Chart, &str, &str) -> Result<(), String>,
 ) {
+    table.begin();
     let (mut made, mut asked) = (Vec::new(), 0);
     for part in projects.chunks(TOGETHER) {
         if table.late() {

@@ -55,6 +55,11 @@ impl<'c> Table<'c> {
         Table { charts, folder, matiec, why: BTreeMap::new(), begun: (now, now), limit }
     }
 
+    /// The time of a row begins, behind what G7 had to write for it.
+    pub(crate) fn begin(&mut self) {
+        self.begun.1 = Instant::now();
+    }
+
     /// True where the row has taken its time.
     pub(crate) fn late(&self) -> bool {
         self.begun.1.elapsed() > self.limit

@@ -6,8 +6,11 @@ use g7_peers::ironplc;
 use crate::charts::Chart;
 use crate::table::{Table, Written, taken};
 
+/// Writes a chart, or nothing where it cannot be asked.
+type Write = fn(&Chart) -> Option<Written>;
+
 pub(crate) fn rows(table: &mut Table<'_>) {
-    let forms: [(&str, fn(&Chart) -> Option<Written>); 3] = [
+    let forms: [(&str, Write); 3] = [
         ("SFC text", sfc),
         ("flat ST", |chart| flat(chart, plc::Form::St)),
         ("IL", |chart| flat(chart, plc::Form::Il)),
