@@ -51,8 +51,9 @@ impl Editor {
         let input = server.stdin.take().expect("its input");
         let output = BufReader::new(server.stdout.take().expect("its output"));
         let mut editor = Editor { server, input, output, number: 0, told: Vec::new() };
-        let hello =
-            editor.ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": {} }));
+        let abilities = json!({ "workspace": { "inlayHint": { "refreshSupport": true } } });
+        let hello = editor
+            .ask("initialize", json!({ "processId": null, "rootUri": null, "capabilities": abilities }));
         assert_eq!(hello["serverInfo"]["name"], "g7");
         editor.tell("initialized", json!({}));
         editor
@@ -60,10 +61,15 @@ impl Editor {
 
     /// An editor with a text that is open.
     fn with(text: &str) -> Editor {
+        Editor::open(URI, text)
+    }
+
+    /// An editor with the file of an address open.
+    fn open(uri: &str, text: &str) -> Editor {
         let mut editor = Editor::new();
         editor.tell(
             "textDocument/didOpen",
-            json!({ "textDocument": { "uri": URI, "languageId": "g7", "version": 1, "text": text } }),
+            json!({ "textDocument": { "uri": uri, "languageId": "g7", "version": 1, "text": text } }),
         );
         editor
     }
@@ -217,6 +223,123 @@ fn names_are_found_explained_and_changed_everywhere() {
     assert!(edits.iter().all(|e| e["newText"] == "start"), "{edits:?}");
     let refused = rename(&mut editor, "V");
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("`V`")), "{refused}");
+}
+
+#[test]
+fn a_word_and_a_sign_are_explained_by_their_rule_and_its_case() {
+    let mut editor = Editor::with(TEXT);
+    let mut hover = |line, character| {
+        let told = editor.at("textDocument/hover", line, character);
+        told["contents"]["value"].as_str().unwrap_or_default().to_owned()
+    };
+    let arrow = hover(8, 5);
+    assert!(arrow.starts_with("transition from `0` to `1`"), "{arrow}");
+    assert!(arrow.contains("IEC 60848:2013, 4.5 evolution rule 2"), "{arrow}");
+    assert!(arrow.contains("```g7\ninput a, b : BOOL\nchart G {"), "{arrow}");
+    let qualifier = hover(7, 11);
+    assert!(qualifier.contains("while the step is active"), "{qualifier}");
+    assert!(qualifier.contains("2.6.4.4, table 45 (N)"), "{qualifier}");
+    assert!(hover(6, 4).contains("**The initial situation.** At the start every initial step"));
+    let text = TEXT
+        .replace("0 -> 1 when go", "0 -> (1, 2) when ↑go")
+        .replace("step 1 {", "step 2\n  step 1 {")
+        .replace("1 -> 0", "(1, 2) -> 0");
+    let mut editor = Editor::with(&text);
+    let mut hover = |line, character| {
+        let told = editor.at("textDocument/hover", line, character);
+        told["contents"]["value"].as_str().unwrap_or_default().to_owned()
+    };
+    let fork = hover(9, 5);
+    assert!(fork.starts_with("transition that forks from `0` to `1`, `2`"), "{fork}");
+    assert!(fork.contains("**A fork activates all its branches.**"), "{fork}");
+    let edge = hover(9, 19);
+    assert!(edge.starts_with("**rise**: a rising edge"), "{edge}");
+    assert!(edge.contains("**An event mixed with a condition.**"), "{edge}");
+    let mut editor = Editor::with(&TEXT.replace("not go", "not gone"));
+    let told = editor.at("textDocument/hover", 9, 19);
+    let problem = told["contents"]["value"].as_str().unwrap_or_default();
+    assert!(
+        problem.starts_with("**G0202**") && problem.ends_with("Rule: IEC 61131-3:2003, 2.4."),
+        "{problem}"
+    );
+}
+
+#[test]
+fn a_new_name_goes_into_the_io_files_of_the_chart() {
+    let folder = common::Folder::with(TEXT);
+    let io = "[devices.d]\nkind = 'modbus-tcp'\nhost = 'ö'\n[inputs]\n'go' = 'd.coil(0)'\n\
+        [outputs]\nV = 'd.coil(1)'\n[shown]\nX1 = 'd.coil(2)'\n";
+    folder.write("chart.io.toml", io);
+    folder.write("line 2.io.toml", io);
+    let uri = |name: &str| format!("file://{}", folder.path(name).display());
+    let mut editor = Editor::open(&uri("chart.g7"), TEXT);
+    let mut rename = |line: u32, character: u32, to: &str| {
+        let params = json!({
+            "textDocument": { "uri": uri("chart.g7") }, "position": { "line": line, "character": character },
+            "newName": to,
+        });
+        editor.answer("textDocument/rename", params)["result"]["changes"].clone()
+    };
+    let changes = rename(8, 15, "start");
+    assert_eq!(changes[uri("chart.g7")].as_array().map(Vec::len), Some(4));
+    let edit = json!([{ "range": range(4, 0, 4), "newText": "'start'" }]);
+    assert_eq!(changes[uri("chart.io.toml")], edit);
+    assert_eq!(changes[uri("line%202.io.toml")], edit, "the only chart of the folder");
+    assert_eq!(
+        rename(7, 7, "9")[uri("chart.io.toml")],
+        json!([{ "range": range(8, 0, 2), "newText": "X9" }])
+    );
+    // With another chart beside it, an io file of another name may be that one's.
+    folder.write("other.g7", TEXT);
+    let changes = rename(1, 7, "valve");
+    assert_eq!(changes[uri("chart.io.toml")], json!([{ "range": range(6, 0, 1), "newText": "valve" }]));
+    assert_eq!(changes.as_object().map(serde_json::Map::len), Some(2), "{changes}");
+    // Where the chart has errors, nobody knows what the names of an io file mean.
+    let mut editor = Editor::open(&uri("chart.g7"), &TEXT.replace("not go", "not go and gone"));
+    let params = json!({
+        "textDocument": { "uri": uri("chart.g7") }, "position": { "line": 8, "character": 15 }, "newName": "start",
+    });
+    let refused = editor.answer("textDocument/rename", params);
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("chart.io.toml")), "{refused}");
+}
+
+#[test]
+fn the_libraries_of_vs_code_see_a_problem_while_its_line_is_typed() {
+    let Some(mut client) = g7_peers::node("vscode-languageserver-protocol", "lsp_client.cjs") else { return };
+    let text = TEXT.replace("0 -> 1 when go", "0->1  when ");
+    let at = |line: u32, character: u32| json!({ "line": line, "character": character });
+    let steps = json!([
+        { "do": "complete", "at": at(8, 13) },
+        { "do": "type", "at": at(8, 13), "characters": "gox" },
+        { "do": "erase", "range": range(8, 15, 16) },
+        { "do": "hover", "at": at(8, 4) },
+        { "do": "rename", "at": at(8, 14), "to": "start" },
+        { "do": "format" },
+    ]);
+    let asked = json!({ "g7": cargo_bin!("g7"), "uri": URI, "text": text, "steps": steps });
+    let mut ran = client
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("node runs");
+    ran.stdin.take().expect("its input").write_all(asked.to_string().as_bytes()).expect("sent");
+    let ran = ran.wait_with_output().expect("an end");
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let told: Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+    assert_eq!((&told["name"], &told["code"]), (&json!("g7"), &json!(0)));
+    let [opened, completed, typed, erased, hover, renamed, formatted] =
+        &told["answers"].as_array().expect("answers")[..]
+    else {
+        panic!("{told}")
+    };
+    assert_eq!(opened, &json!(["G0004"]), "the receptivity is missing");
+    assert!(completed.as_array().is_some_and(|words| words.contains(&json!("go"))), "{completed}");
+    assert_eq!(typed, &json!([["G0202 8:13"], [], ["G0202 8:13"]]));
+    assert_eq!(erased, &json!([]));
+    assert!(hover.as_str().is_some_and(|said| said.contains("evolution rule 2")), "{hover}");
+    assert_eq!(renamed[URI].as_array().map(Vec::len), Some(4));
+    assert_eq!(formatted.as_array().map(Vec::len), Some(1), "{formatted}");
 }
 
 #[test]
