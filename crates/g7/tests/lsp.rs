@@ -8,6 +8,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use serde_json::{Value, json};
 use snapbox::cmd::cargo_bin;
+use tungstenite::client::IntoClientRequest;
 
 const URI: &str = "file:///plant/chart.g7";
 
@@ -301,6 +302,86 @@ fn a_new_name_goes_into_the_io_files_of_the_chart() {
     });
     let refused = editor.answer("textDocument/rename", params);
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("chart.io.toml")), "{refused}");
+}
+
+/// A server of the page that ends with the test.
+struct Served(Child);
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+#[test]
+fn the_values_of_a_running_chart_stand_beside_its_names() {
+    let folder = common::Folder::with(TEXT);
+    let mut command = Command::new(cargo_bin!("g7"));
+    command.args(["serve", "--no-open", "--port", "0"]).current_dir(folder.root());
+    command.env("XDG_STATE_HOME", folder.path(".state"));
+    let mut served = Served(command.stdout(Stdio::piped()).spawn().expect("g7 serve"));
+    let mut address = String::new();
+    BufReader::new(served.0.stdout.take().expect("its output")).read_line(&mut address).expect("an address");
+    let address = address.trim();
+    let (host, token) = address.trim_start_matches("http://").split_once("/?token=").expect("a token");
+    let mut request =
+        IntoClientRequest::into_client_request(format!("ws://{host}/api/live")).expect("an address");
+    request.headers_mut().insert("Authorization", format!("Bearer {token}").parse().expect("a token"));
+    let stream = std::net::TcpStream::connect(host).expect("the server");
+    let (mut page, _) = tungstenite::client(request, stream).expect("a connection");
+    let mut call = |id: u64, call: Value| {
+        page.send(json!({ "id": id, "call": call }).to_string().into()).expect("sent");
+        loop {
+            let text = page.read().expect("an answer").into_text().expect("a text");
+            // A ping has no text.
+            let Ok(told) = serde_json::from_str::<Value>(&text) else { continue };
+            if told["id"] == id {
+                return told["answer"].clone();
+            }
+        }
+    };
+    let begun = call(1, json!({ "do": "run_start", "run": "chart.g7", "file": "chart.g7" }));
+    let signals = begun["ok"]["signals"].as_array().unwrap_or_else(|| panic!("{begun}"));
+    let go = signals.iter().position(|s| s["name"] == "go").expect("the input");
+
+    let uri = format!("file://{}", folder.path("chart.g7").display());
+    let mut editor = Editor::open(&uri, TEXT);
+    let whole = json!({
+        "textDocument": { "uri": uri },
+        "range": { "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } },
+    });
+    assert_eq!(editor.ask("textDocument/inlayHint", whole.clone()), Value::Null, "nothing is followed");
+    let follow = |address: &str| json!({ "command": "g7.follow", "arguments": [address] });
+    let refused = editor.answer("workspace/executeCommand", follow("http://10.1.2.3:4700/?token=abc"));
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("another machine")), "{refused}");
+    editor.ask("workspace/executeCommand", follow(address));
+    // Each refresh of the server is followed by a look, as an editor does it.
+    let shown = |editor: &mut Editor, wanted: &[&str]| {
+        loop {
+            let hints = editor.ask("textDocument/inlayHint", whole.clone());
+            let told = |hint: &Value| {
+                let at = &hint["position"];
+                format!("{}:{} {}", at["line"], at["character"], hint["label"].as_str().unwrap_or_default())
+            };
+            let hints: Vec<String> = hints.as_array().into_iter().flatten().map(told).collect();
+            if hints == wanted {
+                return;
+            }
+            while editor.read()["method"] != "workspace/inlayHint/refresh" {}
+        }
+    };
+    let off = ["0:8 = FALSE", "1:8 = FALSE", "6:16 active 0.0s", "8:16 = FALSE", "9:20 = FALSE"];
+    shown(&mut editor, &off);
+    call(2, json!({ "do": "run_set", "run": "chart.g7", "signal": go, "value": "TRUE" }));
+    call(3, json!({ "do": "run_scan", "run": "chart.g7" }));
+    let on = ["0:8 = TRUE", "1:8 = TRUE", "7:8 active 0.0s", "8:16 = TRUE", "9:20 = TRUE"];
+    shown(&mut editor, &on);
+    editor.ask("workspace/executeCommand", follow(""));
+    assert_eq!(editor.ask("textDocument/inlayHint", whole.clone()), Value::Null, "no longer followed");
+    assert_eq!(editor.ask("shutdown", Value::Null), Value::Null);
+    editor.tell("exit", Value::Null);
+    assert!(editor.server.wait().expect("it ends").success());
 }
 
 #[test]
