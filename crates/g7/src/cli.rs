@@ -527,6 +527,9 @@ pub(crate) struct Lsp {
     /// Accepted because most editors give it; there is no other way.
     #[arg(long, hide = true)]
     pub(crate) stdio: bool,
+    /// Show the values of the runs of `g7 serve` on this machine; the address is the one that it prints.
+    #[arg(long, value_name = "ADDRESS")]
+    pub(crate) follow: Option<String>,
 }
 
 #[derive(Args, Debug)]

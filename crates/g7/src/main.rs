@@ -115,7 +115,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Import(args) => import::import(args),
         Command::Export(args) => export::export(args, prove::read_back),
         Command::Gen(args) => generate::generate(args),
-        Command::Lsp(_) => lsp::serve(),
+        Command::Lsp(args) => lsp::serve(args.follow.as_deref()),
         Command::Explain(args) => explain::explain(args),
         Command::Completions(args) => shell::completions(args),
         Command::Man(args) => shell::man(args),

@@ -8,6 +8,7 @@ use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 
 use serde_json::{Value, json};
 use snapbox::cmd::cargo_bin;
+use tungstenite::client::IntoClientRequest;
 
 const URI: &str = "file:///plant/chart.g7";
 
@@ -57,9 +58,10 @@ impl Editor {
         let input = server.stdin.take().expect("its input");
         let output = BufReader::new(server.stdout.take().expect("its output"));
         let mut editor = Editor { server, input, output, number: 0, told: Vec::new() };
+        let abilities = json!({ "workspace": { "inlayHint": { "refreshSupport": true } } });
         let hello = editor.ask(
             "initialize",
-            json!({ "processId": null, "rootUri": null, "capabilities": {}, "locale": locale }),
+            json!({ "processId": null, "rootUri": null, "capabilities": abilities, "locale": locale }),
         );
         assert_eq!(hello["serverInfo"]["name"], "g7");
         editor.tell("initialized", json!({}));
@@ -68,15 +70,20 @@ impl Editor {
 
     /// An editor with a text that is open.
     fn with(text: &str) -> Editor {
-        Editor::new().opened(text)
+        Editor::open(URI, text)
     }
 
-    /// The editor, with a text that is open.
-    fn opened(mut self, text: &str) -> Editor {
+    /// An editor with the file of an address open.
+    fn open(uri: &str, text: &str) -> Editor {
+        Editor::new().opened(uri, text)
+    }
+
+    /// The editor, with the file of an address open.
+    fn opened(mut self, uri: &str, text: &str) -> Editor {
         let editor = &mut self;
         editor.tell(
             "textDocument/didOpen",
-            json!({ "textDocument": { "uri": URI, "languageId": "g7", "version": 1, "text": text } }),
+            json!({ "textDocument": { "uri": uri, "languageId": "g7", "version": 1, "text": text } }),
         );
         self
     }
@@ -230,6 +237,203 @@ fn names_are_found_explained_and_changed_everywhere() {
     assert!(edits.iter().all(|e| e["newText"] == "start"), "{edits:?}");
     let refused = rename(&mut editor, "V");
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("`V`")), "{refused}");
+}
+
+#[test]
+fn a_word_and_a_sign_are_explained_by_their_rule_and_its_case() {
+    let mut editor = Editor::with(TEXT);
+    let mut hover = |line, character| {
+        let told = editor.at("textDocument/hover", line, character);
+        told["contents"]["value"].as_str().unwrap_or_default().to_owned()
+    };
+    let arrow = hover(8, 5);
+    assert!(arrow.starts_with("transition from `0` to `1`"), "{arrow}");
+    assert!(arrow.contains("IEC 60848:2013, 4.5 evolution rule 2"), "{arrow}");
+    assert!(arrow.contains("```g7\ninput a, b : BOOL\nchart G {"), "{arrow}");
+    let qualifier = hover(7, 11);
+    assert!(qualifier.contains("while the step is active"), "{qualifier}");
+    assert!(qualifier.contains("2.6.4.4, table 45 (N)"), "{qualifier}");
+    assert!(hover(6, 4).contains("**The initial situation.** At the start every initial step"));
+    let text = TEXT
+        .replace("0 -> 1 when go", "0 -> (1, 2) when ↑go")
+        .replace("step 1 {", "step 2\n  step 1 {")
+        .replace("1 -> 0", "(1, 2) -> 0");
+    let mut editor = Editor::with(&text);
+    let mut hover = |line, character| {
+        let told = editor.at("textDocument/hover", line, character);
+        told["contents"]["value"].as_str().unwrap_or_default().to_owned()
+    };
+    let fork = hover(9, 5);
+    assert!(fork.starts_with("transition that forks from `0` to `1`, `2`"), "{fork}");
+    assert!(fork.contains("**A fork activates all its branches.**"), "{fork}");
+    let edge = hover(9, 19);
+    assert!(edge.starts_with("**rise**: a rising edge"), "{edge}");
+    assert!(edge.contains("**An event mixed with a condition.**"), "{edge}");
+    let mut editor = Editor::with(&TEXT.replace("not go", "not gone"));
+    let told = editor.at("textDocument/hover", 9, 19);
+    let problem = told["contents"]["value"].as_str().unwrap_or_default();
+    assert!(
+        problem.starts_with("**G0202**") && problem.ends_with("Rule: IEC 61131-3:2003, 2.4."),
+        "{problem}"
+    );
+}
+
+#[test]
+fn a_new_name_goes_into_the_io_files_of_the_chart() {
+    let folder = common::Folder::with(TEXT);
+    let io = "[devices.d]\nkind = 'modbus-tcp'\nhost = 'ö'\n[inputs]\n'go' = 'd.coil(0)'\n\
+        [outputs]\nV = 'd.coil(1)'\n[shown]\nX1 = 'd.coil(2)'\n";
+    folder.write("chart.io.toml", io);
+    folder.write("line 2.io.toml", io);
+    let uri = |name: &str| format!("file://{}", folder.path(name).display());
+    let mut editor = Editor::open(&uri("chart.g7"), TEXT);
+    let mut rename = |line: u32, character: u32, to: &str| {
+        let params = json!({
+            "textDocument": { "uri": uri("chart.g7") }, "position": { "line": line, "character": character },
+            "newName": to,
+        });
+        editor.answer("textDocument/rename", params)["result"]["changes"].clone()
+    };
+    let changes = rename(8, 15, "start");
+    assert_eq!(changes[uri("chart.g7")].as_array().map(Vec::len), Some(4));
+    let edit = json!([{ "range": range(4, 0, 4), "newText": "'start'" }]);
+    assert_eq!(changes[uri("chart.io.toml")], edit);
+    assert_eq!(changes[uri("line%202.io.toml")], edit, "the only chart of the folder");
+    assert_eq!(
+        rename(7, 7, "9")[uri("chart.io.toml")],
+        json!([{ "range": range(8, 0, 2), "newText": "X9" }])
+    );
+    // With another chart beside it, an io file of another name may be that one's.
+    folder.write("other.g7", TEXT);
+    let changes = rename(1, 7, "valve");
+    assert_eq!(changes[uri("chart.io.toml")], json!([{ "range": range(6, 0, 1), "newText": "valve" }]));
+    assert_eq!(changes.as_object().map(serde_json::Map::len), Some(2), "{changes}");
+    // Where the chart has errors, nobody knows what the names of an io file mean.
+    let mut editor = Editor::open(&uri("chart.g7"), &TEXT.replace("not go", "not go and gone"));
+    let params = json!({
+        "textDocument": { "uri": uri("chart.g7") }, "position": { "line": 8, "character": 15 }, "newName": "start",
+    });
+    let refused = editor.answer("textDocument/rename", params);
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("chart.io.toml")), "{refused}");
+}
+
+/// A server of the page that ends with the test.
+struct Served(Child);
+
+impl Drop for Served {
+    fn drop(&mut self) {
+        self.0.kill().ok();
+        self.0.wait().ok();
+    }
+}
+
+#[test]
+fn the_values_of_a_running_chart_stand_beside_its_names() {
+    let folder = common::Folder::with(TEXT);
+    let mut command = Command::new(cargo_bin!("g7"));
+    command.args(["serve", "--no-open", "--port", "0"]).current_dir(folder.root());
+    command.env("XDG_STATE_HOME", folder.path(".state"));
+    let mut served = Served(command.stdout(Stdio::piped()).spawn().expect("g7 serve"));
+    let mut address = String::new();
+    BufReader::new(served.0.stdout.take().expect("its output")).read_line(&mut address).expect("an address");
+    let address = address.trim();
+    let (host, token) = address.trim_start_matches("http://").split_once("/?token=").expect("a token");
+    let mut request =
+        IntoClientRequest::into_client_request(format!("ws://{host}/api/live")).expect("an address");
+    request.headers_mut().insert("Authorization", format!("Bearer {token}").parse().expect("a token"));
+    let stream = std::net::TcpStream::connect(host).expect("the server");
+    let (mut page, _) = tungstenite::client(request, stream).expect("a connection");
+    let mut call = |id: u64, call: Value| {
+        page.send(json!({ "id": id, "call": call }).to_string().into()).expect("sent");
+        loop {
+            let text = page.read().expect("an answer").into_text().expect("a text");
+            // A ping has no text.
+            let Ok(told) = serde_json::from_str::<Value>(&text) else { continue };
+            if told["id"] == id {
+                return told["answer"].clone();
+            }
+        }
+    };
+    let begun = call(1, json!({ "do": "run_start", "run": "chart.g7", "file": "chart.g7" }));
+    let signals = begun["ok"]["signals"].as_array().unwrap_or_else(|| panic!("{begun}"));
+    let go = signals.iter().position(|s| s["name"] == "go").expect("the input");
+
+    let uri = format!("file://{}", folder.path("chart.g7").display());
+    let mut editor = Editor::open(&uri, TEXT);
+    let whole = json!({
+        "textDocument": { "uri": uri },
+        "range": { "start": { "line": 0, "character": 0 }, "end": { "line": 99, "character": 0 } },
+    });
+    assert_eq!(editor.ask("textDocument/inlayHint", whole.clone()), Value::Null, "nothing is followed");
+    let follow = |address: &str| json!({ "command": "g7.follow", "arguments": [address] });
+    let refused = editor.answer("workspace/executeCommand", follow("http://10.1.2.3:4700/?token=abc"));
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("another machine")), "{refused}");
+    editor.ask("workspace/executeCommand", follow(address));
+    // Each refresh of the server is followed by a look, as an editor does it.
+    let shown = |editor: &mut Editor, wanted: &[&str]| {
+        loop {
+            let hints = editor.ask("textDocument/inlayHint", whole.clone());
+            let told = |hint: &Value| {
+                let at = &hint["position"];
+                format!("{}:{} {}", at["line"], at["character"], hint["label"].as_str().unwrap_or_default())
+            };
+            let hints: Vec<String> = hints.as_array().into_iter().flatten().map(told).collect();
+            if hints == wanted {
+                return;
+            }
+            while editor.read()["method"] != "workspace/inlayHint/refresh" {}
+        }
+    };
+    let off = ["0:8 = FALSE", "1:8 = FALSE", "6:16 active 0.0s", "8:16 = FALSE", "9:20 = FALSE"];
+    shown(&mut editor, &off);
+    call(2, json!({ "do": "run_set", "run": "chart.g7", "signal": go, "value": "TRUE" }));
+    call(3, json!({ "do": "run_scan", "run": "chart.g7" }));
+    let on = ["0:8 = TRUE", "1:8 = TRUE", "7:8 active 0.0s", "8:16 = TRUE", "9:20 = TRUE"];
+    shown(&mut editor, &on);
+    editor.ask("workspace/executeCommand", follow(""));
+    assert_eq!(editor.ask("textDocument/inlayHint", whole.clone()), Value::Null, "no longer followed");
+    assert_eq!(editor.ask("shutdown", Value::Null), Value::Null);
+    editor.tell("exit", Value::Null);
+    assert!(editor.server.wait().expect("it ends").success());
+}
+
+#[test]
+fn the_libraries_of_vs_code_see_a_problem_while_its_line_is_typed() {
+    let Some(mut client) = g7_peers::node("vscode-languageserver-protocol", "lsp_client.cjs") else { return };
+    let text = TEXT.replace("0 -> 1 when go", "0->1  when ");
+    let at = |line: u32, character: u32| json!({ "line": line, "character": character });
+    let steps = json!([
+        { "do": "complete", "at": at(8, 13) },
+        { "do": "type", "at": at(8, 13), "characters": "gox" },
+        { "do": "erase", "range": range(8, 15, 16) },
+        { "do": "hover", "at": at(8, 4) },
+        { "do": "rename", "at": at(8, 14), "to": "start" },
+        { "do": "format" },
+    ]);
+    let asked = json!({ "g7": cargo_bin!("g7"), "uri": URI, "text": text, "steps": steps });
+    let mut ran = client
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("node runs");
+    ran.stdin.take().expect("its input").write_all(asked.to_string().as_bytes()).expect("sent");
+    let ran = ran.wait_with_output().expect("an end");
+    assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stderr));
+    let told: Value = serde_json::from_slice(&ran.stdout).expect("JSON");
+    assert_eq!((&told["name"], &told["code"]), (&json!("g7"), &json!(0)));
+    let [opened, completed, typed, erased, hover, renamed, formatted] =
+        &told["answers"].as_array().expect("answers")[..]
+    else {
+        panic!("{told}")
+    };
+    assert_eq!(opened, &json!(["G0004"]), "the receptivity is missing");
+    assert!(completed.as_array().is_some_and(|words| words.contains(&json!("go"))), "{completed}");
+    assert_eq!(typed, &json!([["G0202 8:13"], [], ["G0202 8:13"]]));
+    assert_eq!(erased, &json!([]));
+    assert!(hover.as_str().is_some_and(|said| said.contains("evolution rule 2")), "{hover}");
+    assert_eq!(renamed[URI].as_array().map(Vec::len), Some(4));
+    assert_eq!(formatted.as_array().map(Vec::len), Some(1), "{formatted}");
 }
 
 #[test]
@@ -405,7 +609,7 @@ fn problems_are_told_in_the_language_of_the_editor() {
         (Some("pt-PT"), "nada se chama"),
         (Some("nl"), "nothing is called"),
     ] {
-        let mut editor = Editor::speaking(locale).opened(&broken);
+        let mut editor = Editor::speaking(locale).opened(URI, &broken);
         let told = editor.problems().to_string();
         assert!(told.contains(word), "{locale:?}: {told}");
     }

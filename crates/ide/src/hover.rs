@@ -2,10 +2,11 @@
 
 use std::ops::Range;
 
-use g7_model::{ChartKind, Language, Qualifier, Said, StandardFunction, Type, say, words};
+use g7_model::{ChartKind, Language, Problem, Qualifier, Said, StandardFunction, Type, say, words};
 
 use crate::file::File;
 use crate::names::{Meaning, Named, meaning, word_at};
+use crate::rules;
 use crate::tables::declaration;
 
 /// An explanation of a piece of the text.
@@ -15,34 +16,63 @@ pub struct Hover {
     pub range: Range<usize>,
     /// The explanation, as Markdown.
     pub markdown: String,
+    /// The source of the rule that a problem there breaks.
+    pub source: Option<&'static str>,
+    /// The name of the case that shows the rule (see [`crate::cases`]).
+    pub case: Option<&'static str>,
 }
 
 /// The explanation of the text at a byte.
 pub fn hover(file: &File, byte: usize) -> Option<Hover> {
-    let problem = file.problems.iter().filter(|p| {
+    let touches = |range: &Range<usize>| range.start <= byte && byte <= range.end;
+    let near = |p: &&Problem| {
         let range = file.source.range(p.at);
-        range.start <= byte && byte <= range.end && range.len() < 400
-    });
-    let language = file.language;
-    let said: Vec<String> = problem
-        .map(|p| {
-            let help = p.help.as_ref().map_or(String::new(), |h| format!("  \n{}", h.in_language(language)));
-            format!("**{}** {}{help}", p.code.id, p.what.in_language(language))
-        })
-        .collect();
-    let word = word_at(file.text(), byte);
-    let named = word.as_ref().and_then(|w| meaning(&file.source.document, w));
-    let range = match &word {
-        Some(w) => w.token.start..w.token.end,
-        None => {
-            let mut ranges = file.problems.iter().map(|p| file.source.range(p.at));
-            ranges.find(|range| range.start <= byte && byte <= range.end)?
-        }
+        touches(&range) && range.len() < 400
     };
-    let about =
-        named.map(|n| describe(&n, language)).or_else(|| word.and_then(|w| explain(w.text, language)));
-    let parts: Vec<String> = said.into_iter().chain(about).collect();
-    (!parts.is_empty()).then(|| Hover { range, markdown: parts.join("\n\n") })
+    let problems: Vec<&Problem> = file.problems.iter().filter(near).collect();
+    let language = file.language;
+    let said = problems.iter().map(|p| {
+        let help = p.help.as_ref().map_or(String::new(), |h| format!("  \n{}", h.in_language(language)));
+        format!("**{}** {}{help}", p.code.id, p.what.in_language(language))
+    });
+    let word = word_at(file.text(), byte);
+    let sign = if word.is_none() { sign_at(file.text(), byte) } else { None };
+    let range = match (&word, &sign) {
+        (Some(w), _) => w.token.start..w.token.end,
+        (None, Some(sign)) => sign.clone(),
+        (None, None) => file.problems.iter().map(|p| file.source.range(p.at)).find(touches)?,
+    };
+    let named = word.as_ref().and_then(|w| meaning(&file.source.document, w));
+    let (about, rule) = match (named, &word, &sign) {
+        (Some(named), _, _) => (Some(describe(&named, language)), None),
+        (None, Some(word), _) => (explain(word.text, language), rules::of_word(word.text)),
+        (None, None, Some(sign)) => explain_sign(file, sign),
+        (None, None, None) => (None, None),
+    };
+    let parts: Vec<String> = said.chain(about).collect();
+    if parts.is_empty() {
+        return None;
+    }
+    let broken = problems.iter().find_map(|p| rules::of(rules::OF_CODES, p.code.id));
+    let source = problems.first().map(|p| p.code.source);
+    Some(Hover { range, markdown: parts.join("\n\n"), source, case: broken.or(rule) })
+}
+
+/// The arrow of a transition or the sign of an edge that contains a byte or ends there.
+fn sign_at(text: &str, byte: usize) -> Option<Range<usize>> {
+    let signs = g7_syntax::tokens(text).take_while(|t| t.start <= byte).filter(|t| byte <= t.end);
+    let told = |range: &Range<usize>| matches!(text.get(range.clone()), Some("->" | "→" | "↑" | "^" | "↓"));
+    signs.map(|t| t.start..t.end).find(told)
+}
+
+/// The meaning of a sign, and the case of its rule.
+fn explain_sign(file: &File, sign: &Range<usize>) -> (Option<String>, Option<&'static str>) {
+    let word = match file.text().get(sign.clone()) {
+        Some("↑" | "^") => "rise",
+        Some("↓") => "fall",
+        _ => return rules::of_arrow(&file.source.document, sign.start).unzip(),
+    };
+    (explain(word, file.language), rules::of_word(word))
 }
 
 fn describe(n: &Named<'_>, language: Language) -> String {

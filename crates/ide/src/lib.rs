@@ -19,6 +19,7 @@
 //! - If the text has syntax errors, names come from the latest text without them.
 #![forbid(unsafe_code)]
 
+pub mod cases;
 pub mod completion;
 mod file;
 pub mod fixes;
@@ -26,12 +27,14 @@ mod format;
 pub mod gestures;
 pub mod hover;
 pub mod ids;
+pub mod inlays;
 pub mod lenses;
 pub mod logic;
 pub mod names;
 pub mod outline;
 mod positions;
 pub mod references;
+pub mod rules;
 pub mod search;
 pub mod tables;
 pub mod tokens;

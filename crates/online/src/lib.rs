@@ -49,6 +49,7 @@ mod parts;
 mod points;
 mod probe;
 mod realtime;
+mod renamed;
 mod runtime;
 #[cfg(feature = "s7")]
 mod s7;
@@ -85,6 +86,7 @@ pub use panel::{Moved, Panels};
 pub use part::Part;
 pub use parts::{Handles, Picture, Successor};
 pub use probe::{Asked, Probed, ask, hear, probe};
+pub use renamed::renamed;
 pub use runtime::{Answer, AtDevice, Options, Running, start};
 pub use saver::Saver;
 pub use sight::Sight;

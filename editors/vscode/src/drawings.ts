@@ -21,7 +21,8 @@ export class Drawings implements vscode.Disposable {
   private servers = new Map<string, Server>();
   private panels = new Map<string, vscode.WebviewPanel>();
 
-  constructor(private program: () => string) {}
+  /** `follow` is given the address of each server, and an empty one as it ends. */
+  constructor(private program: () => string, private follow: (address: string) => Promise<void>) {}
 
   /** Shows the page of a file; a panel that is there comes to the front. */
   async show(file: string): Promise<void> {
@@ -64,6 +65,8 @@ export class Drawings implements vscode.Disposable {
       for (const panel of server.panels) panel.webview.html = page('', 'The server of the drawing has ended. Close this panel and open the drawing again.');
     });
     this.servers.set(folder, server);
+    // A failure is told in the panel.
+    server.address.then((address) => this.follow(address.toString()), () => undefined);
     return server;
   }
 
@@ -95,6 +98,7 @@ export class Drawings implements vscode.Disposable {
   private end(server: Server): void {
     if (this.servers.get(server.folder) === server) this.servers.delete(server.folder);
     server.process.kill('SIGINT');
+    void this.follow('');
   }
 
   dispose(): void {

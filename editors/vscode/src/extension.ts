@@ -82,8 +82,18 @@ async function inTerminal(work: Work, uri: unknown, name: unknown): Promise<void
   await vscode.tasks.executeTask(task);
 }
 
+/** Has the language server show the values of the runs of a server; without an address of none. */
+async function follow(address: string): Promise<void> {
+  try {
+    // The client has registered this command of the language server.
+    await vscode.commands.executeCommand('g7.follow', address);
+  } catch (e) {
+    if (address !== '') void vscode.window.showErrorMessage(`No values can be shown: ${e instanceof Error ? e.message : String(e)}`);
+  }
+}
+
 export async function activate(context: vscode.ExtensionContext): Promise<void> {
-  const drawings = new Drawings(program);
+  const drawings = new Drawings(program, follow);
   const command = (id: string, does: (...args: unknown[]) => Promise<void>) =>
     context.subscriptions.push(vscode.commands.registerCommand(id, does));
   for (const work of ['run', 'test', 'prove'] as const) {
@@ -92,6 +102,11 @@ export async function activate(context: vscode.ExtensionContext): Promise<void> 
   command('g7.draw', async (uri) => {
     const file = await fileOf(uri);
     if (file !== undefined) await drawings.show(file);
+  });
+  command('g7.values', async () => {
+    const prompt = 'The address that `g7 serve` prints; none to show no values';
+    const address = await vscode.window.showInputBox({ prompt, placeHolder: 'http://127.0.0.1:4700/?token=…' });
+    if (address !== undefined) await follow(address.trim());
   });
   command('g7.restart', async () => {
     await stopClient();

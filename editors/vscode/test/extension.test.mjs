@@ -120,6 +120,15 @@ test('a text that is no file is refused in words', async () => {
   assert.match(did[0][1], /save/);
 });
 
+test('the values of a run are shown from the address that is typed, and nothing happens without one', async () => {
+  did.length = 0;
+  await commands.get('g7.values')();
+  assert.deepEqual(did, []);
+  vscode.window.typed = ' http://127.0.0.1:4700/?token=abc ';
+  await commands.get('g7.values')();
+  assert.deepEqual(did, [['command', 'g7.follow', 'http://127.0.0.1:4700/?token=abc']]);
+});
+
 test('a program that is missing is told, with the way to the setting', async () => {
   did.length = 0;
   settings.path = join(scratch, 'missing');
@@ -146,8 +155,11 @@ test('the drawing: one server for a folder, one panel for a file, and an end wit
   const html = panels[0].webview.html;
   assert.match(html, /<iframe src="http:\/\/127\.0\.0\.1:47123\/\?token=abc&#38;file=a\+tank\.g7"/);
   assert.match(html, /frame-src http:\/\/127\.0\.0\.1:47123;/);
+  const followed = () => did.filter(([what]) => what === 'command').map(([, ...told]) => told);
+  assert.deepEqual(followed(), [['g7.follow', 'http://127.0.0.1:47123/?token=abc']]);
   panels[0].dispose();
   panels[1].dispose();
+  assert.deepEqual(followed().at(-1), ['g7.follow', '']);
   await until(() => logged().at(-1) === 'ended', 'the server goes on without a panel');
   settings.path = program;
 });

@@ -8,6 +8,7 @@ use lsp_types::{
     PrepareRenameResponse, RenameParams, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit,
 };
 
+use super::beside;
 use super::open::{Open, diagnostic};
 use super::places;
 
@@ -48,10 +49,17 @@ pub(super) fn changeable(open: &Open, p: &TextDocumentPositionParams) -> Option<
     Some(PrepareRenameResponse::RangeWithPlaceholder { range: places::range(file, &range), placeholder })
 }
 
+/// The change of a name in its file, and in the io files that wire the variables of that file.
+#[allow(clippy::mutable_key_type, reason = "the type of the protocol; an address is never changed")]
 pub(super) fn rename(open: &Open, p: &RenameParams) -> Result<Option<WorkspaceEdit>, String> {
     let Some((file, byte)) = at(open, &p.text_document_position) else { return Ok(None) };
+    let uri = &p.text_document_position.text_document.uri;
     let splices = references::rename(file, byte, &p.new_name)?;
-    Ok(Some(edit(&p.text_document_position.text_document.uri, places::edits(file, &splices))))
+    let name = references::changeable(file, byte).map(|(_, name)| name).unwrap_or_default();
+    let mut changes: HashMap<Uri, Vec<TextEdit>> =
+        beside::renamed(uri, file, &name, &splices)?.into_iter().collect();
+    changes.insert(uri.clone(), places::edits(file, &splices));
+    Ok(Some(WorkspaceEdit::new(changes)))
 }
 
 /// The file and the byte at a place.

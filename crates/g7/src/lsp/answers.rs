@@ -34,6 +34,8 @@ pub(super) fn capabilities() -> Value {
         "renameProvider": { "prepareProvider": true },
         "codeActionProvider": { "codeActionKinds": ["quickfix"] },
         "codeLensProvider": {},
+        "inlayHintProvider": true,
+        "executeCommandProvider": { "commands": [super::shows::FOLLOW] },
         "semanticTokensProvider": {
             "legend": { "tokenTypes": Class::ALL.map(kind), "tokenModifiers": [] },
             "full": true,
@@ -89,7 +91,15 @@ pub(super) fn completion(open: &Open, p: &CompletionParams) -> Option<Vec<Comple
 pub(super) fn hover(open: &Open, p: &HoverParams) -> Option<Hover> {
     let (file, byte) = at(open, &p.text_document_position_params)?;
     let found = g7_ide::hover::hover(file, byte)?;
-    let contents = HoverContents::Markup(MarkupContent { kind: MarkupKind::Markdown, value: found.markdown });
+    let mut told = found.markdown;
+    if let Some(source) = found.source {
+        told += &format!("\n\nRule: {source}.");
+    }
+    if let Some(case) = found.case.and_then(g7_ide::cases::find) {
+        let g7_ide::cases::Case { title, rule, source, chart } = case;
+        told += &format!("\n\n---\n\n**{title}.** {rule}\n\n```g7\n{chart}\n```\n\n{source}");
+    }
+    let contents = HoverContents::Markup(MarkupContent { kind: MarkupKind::Markdown, value: told });
     Some(Hover { contents, range: Some(places::range(file, &found.range)) })
 }
 

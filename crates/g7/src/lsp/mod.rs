@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! editor <- JSON-RPC on standard input and output -> lsp -> ide (what is asked about a text)
+//!                                                     |<- follow <- g7 serve (what a run shows)
 //! ```
 //!
 //! The server is a door: it converts places and words, and decides nothing about charts.
@@ -14,8 +15,11 @@
 
 mod actions;
 mod answers;
+mod beside;
+mod follow;
 mod open;
 mod places;
+mod shows;
 
 use g7_model::Language;
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
@@ -24,26 +28,30 @@ use lsp_types::notification::{
 };
 use lsp_types::request::{
     CodeActionRequest, CodeLensRequest, Completion, DocumentHighlightRequest, DocumentSymbolRequest,
-    FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename,
-    Request as _, SemanticTokensFullRequest, SemanticTokensRangeRequest,
+    ExecuteCommand, FoldingRangeRequest, Formatting, GotoDefinition, HoverRequest, InlayHintRequest,
+    PrepareRenameRequest, References, Rename, Request as _, SemanticTokensFullRequest,
+    SemanticTokensRangeRequest,
 };
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::failure::{Failure, Verdict};
 use open::Open;
+use shows::Shows;
 
 /// Answers one editor until it sends `shutdown` and `exit`, or closes the connection.
-pub(crate) fn serve() -> Result<Verdict, Failure> {
+///
+/// `follow` is the address of a server whose runs are shown.
+pub(crate) fn serve(follow: Option<&str>) -> Result<Verdict, Failure> {
     let (connection, threads) = Connection::stdio();
-    let served = session(&connection);
+    let served = session(&connection, follow);
     // The threads end with the connection.
     drop(connection);
     threads.join()?;
     served.map(|()| Verdict::Fine)
 }
 
-fn session(connection: &Connection) -> Result<(), Failure> {
+fn session(connection: &Connection, follow: Option<&str>) -> Result<(), Failure> {
     let broken = |e: &dyn std::fmt::Display| Failure::Usage(format!("the editor broke off: {e}"));
     let (id, asked) = connection.initialize_start().map_err(|e| broken(&e))?;
     let hello = serde_json::json!({
@@ -55,13 +63,17 @@ fn session(connection: &Connection) -> Result<(), Failure> {
     let locale = asked.get("locale").and_then(serde_json::Value::as_str);
     let language = locale.map_or_else(crate::tongue::language, |l| Language::of(l).unwrap_or_default());
     let mut open = Open::in_language(language);
+    let mut shows = Shows::new(&connection.sender, &asked);
+    if let Some(address) = follow.or(asked["initializationOptions"]["follow"].as_str()) {
+        shows.begin(address);
+    }
     while let Some(message) = next(connection, &mut open)? {
         match message {
             Message::Request(request) => {
                 if connection.handle_shutdown(&request).map_err(|e| broken(&e))? {
                     break;
                 }
-                send(connection, Message::Response(answer(&open, request)))?;
+                send(connection, Message::Response(answer(&open, &mut shows, request)))?;
             }
             Message::Notification(told) => hear(&mut open, told),
             Message::Response(_) => {}
@@ -109,7 +121,7 @@ fn hear(open: &mut Open, told: Notification) {
     }
 }
 
-fn answer(open: &Open, request: Request) -> Response {
+fn answer(open: &Open, shows: &mut Shows, request: Request) -> Response {
     match request.method.as_str() {
         Completion::METHOD => of(request, |p| Ok(answers::completion(open, p))),
         HoverRequest::METHOD => of(request, |p| Ok(answers::hover(open, p))),
@@ -124,6 +136,8 @@ fn answer(open: &Open, request: Request) -> Response {
         CodeActionRequest::METHOD => of(request, |p| Ok(actions::fixes(open, p))),
         Formatting::METHOD => of(request, |p| Ok(actions::format(open, p))),
         PrepareRenameRequest::METHOD => of(request, |p| Ok(actions::changeable(open, p))),
+        InlayHintRequest::METHOD => of(request, |p| Ok(shows.inlays(open, p))),
+        ExecuteCommand::METHOD => of(request, |p| shows.command(p)),
         Rename::METHOD => of(request, |p| actions::rename(open, p)),
         other => {
             let what = format!("g7 does not know the request `{other}`");

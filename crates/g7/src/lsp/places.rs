@@ -1,10 +1,11 @@
 //! Places of a text as the protocol has them: lines, and UTF-16 code units on a line.
 
 use std::ops;
+use std::path::PathBuf;
 
 use g7_edit::Splice;
 use g7_ide::{File, Positions};
-use lsp_types::{Position, Range, TextEdit};
+use lsp_types::{Position, Range, TextEdit, Uri};
 
 /// A byte of a text as a position.
 pub(super) fn position(positions: &Positions, text: &str, byte: usize) -> Position {
@@ -35,4 +36,24 @@ pub(super) fn bytes(file: &File, range: Range) -> ops::Range<usize> {
 pub(super) fn edits(file: &File, splices: &[Splice]) -> Vec<TextEdit> {
     let edit = |s: &Splice| TextEdit::new(range(file, &(s.start..s.end)), s.insert.clone());
     splices.iter().map(edit).collect()
+}
+
+/// The path of a file on this machine that an address names.
+pub(super) fn path(uri: &Uri) -> Option<PathBuf> {
+    if !uri.scheme()?.as_str().eq_ignore_ascii_case("file") {
+        return None;
+    }
+    let path = uri.path().as_estr().decode().into_string().ok()?;
+    // `/c:/charts` on Windows.
+    let drive = path.as_bytes().get(2) == Some(&b':');
+    let path = if drive { path.strip_prefix('/').unwrap_or(&path) } else { &path };
+    Some(PathBuf::from(path))
+}
+
+/// The address of a file in the folder of another one.
+pub(super) fn beside(uri: &Uri, name: &str) -> Option<Uri> {
+    let (folder, _) = uri.as_str().rsplit_once('/')?;
+    let plain = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_' | b'~');
+    let written = |b: u8| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") };
+    format!("{folder}/{}", name.bytes().map(written).collect::<String>()).parse().ok()
 }

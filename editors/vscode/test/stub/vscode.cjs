@@ -70,6 +70,8 @@ const vscode = {
   window: {
     activeTextEditor: undefined,
     showErrorMessage: async (text) => void did.push(['error', text]),
+    showInputBox: async () => vscode.window.typed,
+    typed: undefined,
     createWebviewPanel: panel,
   },
   commands: {
