@@ -362,6 +362,10 @@ impl<'a> Parser<'a> {
 
     /// Reports a closing bracket that belongs to no other.
     fn closes_nothing(&mut self) {
+        // A text of millions of brackets is not worded for nobody.
+        if self.silent() {
+            return;
+        }
         let at = self.here();
         let what = say!("this `{}` closes nothing", self.slice(self.cur));
         let help = say!("delete it, or write the bracket that it closes");
