@@ -175,11 +175,17 @@ test('half a text leaves the last drawing, says so, and can be read', async () =
   await page.getByRole('button', { name: 'Drawing and text' }).click();
   await page.locator('.cm-content').click();
   await page.keyboard.press('Control+End');
-  for (const typed of ['\nchart {{ oops', '\ntest "', '\nchart ', '\nchart G1 {\n step ']) {
+  // Behind the chart: it is drawn from the present text.
+  for (const typed of ['\nchart {{ oops', '\ntest "', '\nchart ']) {
     await page.keyboard.type(typed);
-    await page.locator('.stale-note').waitFor();
+    await page.locator('.cm-lint-marker-error').first().waitFor();
     await item(page, 'G1/s/2').waitFor({ state: 'attached' });
+    await page.locator('.stale-note').waitFor({ state: 'detached' });
   }
+  // A second chart of its name that cannot be read: the last drawing stays, and says so.
+  await page.keyboard.type('\nchart G1 {\n step ');
+  await page.locator('.stale-note').waitFor();
+  await item(page, 'G1/s/2').waitFor({ state: 'attached' });
   await page.getByRole('button', { name: 'Bottom' }).click();
   await page.getByRole('tab', { name: 'Variables' }).click();
   await page.getByLabel('Type: a').waitFor();
