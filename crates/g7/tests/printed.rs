@@ -269,5 +269,5 @@ fn the_commands_of_a_new_project_work_as_printed() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
-    assert_eq!(counts, 5);
+    assert_eq!(counts, 7);
 }

@@ -65,11 +65,10 @@ impl Folder {
             .args(args)
             .current_dir(&self.0)
             .env_remove("CLICOLOR_FORCE")
-            .env_remove("LC_MESSAGES")
             .env_remove("LC_ALL")
+            .env_remove("LC_MESSAGES")
             .env("LANG", "C")
             .env("COLUMNS", "100")
-            .env("LC_ALL", "C")
     }
 
     pub(crate) fn root(&self) -> &Path {
