@@ -55,8 +55,17 @@ fn a_syntax_error_keeps_the_last_good_drawing() {
     let drawing = json!({ "do": "drawing", "file": "a.g7", "chart": "G" });
     let good = page.ok(drawing.clone());
     assert_eq!(good["stale"], false);
-    let look = page
-        .ok(json!({ "do": "splice", "file": "a.g7", "splices": [{ "from": 0, "to": 5, "insert": "{{{" }] }));
+    let broken = |from: usize, to: usize| {
+        let splices = json!([{ "from": from, "to": to, "insert": "{{{" }]);
+        json!({ "do": "splice", "file": "a.g7", "splices": splices })
+    };
+    // Outside of the chart: it is drawn from the present text.
+    page.ok(broken(0, 5));
+    assert_eq!(page.ok(drawing.clone())["stale"], false);
+    page.ok(json!({ "do": "undo", "file": "a.g7" }));
+    let before = CHART.split("-> 2").next().expect("the text before an arrow");
+    let at = before.encode_utf16().count();
+    let look = page.ok(broken(at, at + 2));
     assert_eq!((&look["clean"], &look["charts"][0]["name"]), (&json!(false), &json!("G")));
     let kept = page.ok(drawing.clone());
     assert_eq!(kept["stale"], true);
