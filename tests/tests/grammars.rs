@@ -246,7 +246,7 @@ fn vim_knows_each_word_at_its_place() {
             "edit {i}.g7\ncall add(s:out, &filetype . ' ' . synIDattr(synID({line}, {column}, 1), 'name'))\n"
         ));
     }
-    // And what is no word: a note, a comment, a text, a number and a duration.
+    // Other tokens have a group as well: a note, a comment, a text, a number and a duration.
     let other =
         "// note\ninput a : BOOL at %I0.1 \"comment\"\nvar t : TIME := 5s\nvar s : STRING := 'text'\n";
     std::fs::write(folder.join("other.g7"), other).expect("a chart");

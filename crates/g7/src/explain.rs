@@ -2,8 +2,7 @@
 
 use std::io::Write;
 
-use g7_model::Language;
-use g7_model::codes::{self, Code};
+use g7_model::codes;
 
 use crate::cli::Explain;
 use crate::failure::{Failure, Verdict};
@@ -14,7 +13,7 @@ pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
     let language = tongue::language();
     let Some(id) = &args.code else {
         for code in codes::ALL {
-            let (sort, title) = (code.severity.name(), title(code, language));
+            let (sort, title) = (code.severity.name(), code.title_in(language));
             writeln!(out, "{}{}{:#}  {sort:<7}  {title}", style::STRONG, code.id, style::STRONG)?;
         }
         return Ok(out.flush().map(|()| Verdict::Fine)?);
@@ -24,11 +23,4 @@ pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
     };
     write!(out, "{text}")?;
     Ok(out.flush().map(|()| Verdict::Fine)?)
-}
-
-/// The title of a code, as its page has it behind the code: `# G0101: a chart that never starts`.
-fn title(code: &Code, language: Language) -> String {
-    let page = g7_page::explain(code.id, language).unwrap_or_default();
-    let heading = page.lines().next().and_then(|line| line.split_once(code.id));
-    heading.map_or(code.title, |(_, title)| title.trim_start_matches([' ', ':'])).to_owned()
 }

@@ -383,23 +383,30 @@ io.stdout:write('undone: ' .. codes() .. '\n')
 vim.cmd('qall!')
 "#;
 
-#[test]
-fn neovim_shows_a_problem_while_its_line_is_typed() {
+/// The output of a Neovim script that runs beside the chart, and its errors; none if there is no Neovim.
+fn neovim(script: &str) -> Option<(String, String)> {
     if !g7_peers::tool("nvim") {
-        return;
+        return None;
     }
     let folder = common::Folder::with(TEXT);
-    folder.write("try.lua", NEOVIM);
+    folder.write("try.lua", script);
+    let files = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../editors/vim");
     let ran = Command::new("nvim")
         .args(["--headless", "-u", "NONE", "-i", "NONE", "-n", "-c", "luafile try.lua"])
         .current_dir(folder.path(""))
         .env("G7", cargo_bin!("g7"))
+        .env("VIM_FILES", files)
         .env("HOME", folder.path(""))
         .stdin(Stdio::null())
         .output()
         .expect("nvim runs");
-    let said = String::from_utf8_lossy(&ran.stdout).replace('\r', "");
-    let errors = String::from_utf8_lossy(&ran.stderr);
+    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).replace('\r', "");
+    Some((text(&ran.stdout), text(&ran.stderr)))
+}
+
+#[test]
+fn neovim_shows_a_problem_while_its_line_is_typed() {
+    let Some((said, errors)) = neovim(NEOVIM) else { return };
     assert_eq!(said, "typed: G0202 8:14\nundone: \n", "{errors}");
 }
 
@@ -430,23 +437,7 @@ vim.cmd('qall!')
 
 #[test]
 fn the_files_for_vim_start_the_server_in_neovim() {
-    if !g7_peers::tool("nvim") {
-        return;
-    }
-    let folder = common::Folder::with(TEXT);
-    folder.write("try.lua", PLUGIN);
-    let files = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../editors/vim");
-    let ran = Command::new("nvim")
-        .args(["--headless", "-u", "NONE", "-i", "NONE", "-n", "-c", "luafile try.lua"])
-        .current_dir(folder.path(""))
-        .env("G7", cargo_bin!("g7"))
-        .env("VIM_FILES", files)
-        .env("HOME", folder.path(""))
-        .stdin(Stdio::null())
-        .output()
-        .expect("nvim runs");
-    let said = String::from_utf8_lossy(&ran.stdout).replace('\r', "");
-    let errors = String::from_utf8_lossy(&ran.stderr);
+    let Some((said, errors)) = neovim(PLUGIN) else { return };
     assert_eq!(said, "g7 g7 g7\n1 problem\ntrue\n", "{errors}");
 }
 

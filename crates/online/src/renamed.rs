@@ -59,11 +59,17 @@ fn names(text: &str) -> Vec<At<String>> {
 fn as_key(raw: &str, name: &str) -> String {
     let bare = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     match raw.chars().next() {
-        Some('\'') => format!("'{name}'"),
-        Some('"') => format!("\"{name}\""),
+        // Nothing is escaped between single quotes.
+        Some('\'') if !name.contains('\'') => format!("'{name}'"),
+        Some('\'' | '"') => quoted(name),
         _ if name.chars().all(bare) => name.to_owned(),
-        _ => format!("\"{name}\""),
+        _ => quoted(name),
     }
+}
+
+/// A name in double quotes, with the escapes of TOML.
+fn quoted(name: &str) -> String {
+    format!("\"{}\"", name.replace('\\', "\\\\").replace('"', "\\\""))
 }
 
 #[cfg(test)]
@@ -89,6 +95,17 @@ mod tests {
             text.replace_range(place, &name);
         }
         text
+    }
+
+    #[test]
+    fn a_name_with_quotes_in_it_is_escaped() {
+        assert_eq!(as_key("'go'", "it's"), "\"it's\"");
+        for raw in ["go", "\"go\"", "'go'"] {
+            let text = format!("{} = 1", as_key(raw, "it's a \"\\\""));
+            let table = toml::de::DeTable::parse(&text).expect("TOML").into_inner();
+            let names: Vec<&str> = table.keys().map(|key| &**key.get_ref()).collect();
+            assert_eq!(names, ["it's a \"\\\""], "{text}");
+        }
     }
 
     #[test]

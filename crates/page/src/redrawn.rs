@@ -91,16 +91,18 @@ impl<'a> Redrawn<'a> {
         };
         let known: HashMap<u64, usize> = old.iter().enumerate().map(|(k, item)| (look(item), k)).collect();
         let mut places = Vec::new();
-        let items = drawn.items.iter().map(|item| {
-            let alike = known.get(&look(item)).and_then(|k| Some((*k, old.get(*k)?)));
-            match alike.filter(|(_, o)| o.svg == item.svg && o.far == item.far) {
-                Some((k, o)) if o.same(item) => {
-                    places.extend([item.from, item.to]);
-                    Sent::Same(k)
-                }
-                Some((k, _)) => Sent::Alike { r#as: k, item },
-                None => Sent::New { svg: &item.svg, far: &item.far, item },
+        let alike = |item: &Item| {
+            // A whole drawing is compared with nothing, so its symbols need no numbers.
+            let k = if known.is_empty() { None } else { known.get(&look(item)).copied() }?;
+            old.get(k).filter(|o| o.svg == item.svg && o.far == item.far).map(|o| (k, o))
+        };
+        let items = drawn.items.iter().map(|item| match alike(item) {
+            Some((k, o)) if o.same(item) => {
+                places.extend([item.from, item.to]);
+                Sent::Same(k)
             }
+            Some((k, _)) => Sent::Alike { r#as: k, item },
+            None => Sent::New { svg: &item.svg, far: &item.far, item },
         });
         let items = items.collect();
         Redrawn { drawn, number, since, items, places }

@@ -13,6 +13,23 @@ const OTHERS: [(&str, &str, &str, &str); 2] = [
     ("pt", "pt/problems", "## Como corrigir", "Fonte: "),
 ];
 
+/// The first line of a page, as French writes a colon and as the others do.
+fn heading(id: &str, title: &str, language: Language) -> String {
+    let colon = if language == Language::French { " :" } else { ":" };
+    format!("# {id}{colon} {title}")
+}
+
+#[test]
+fn the_title_of_a_code_is_the_heading_of_its_page() {
+    for code in codes::ALL {
+        for language in Language::ALL {
+            let page = explain(code.id, language).expect("a page");
+            let title = code.title_in(language);
+            assert_eq!(page.lines().next(), Some(&*heading(code.id, &title, language)));
+        }
+    }
+}
+
 /// The pages of a folder of the book, by code.
 fn pages(folder: &str) -> BTreeMap<String, String> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/book").join(folder);

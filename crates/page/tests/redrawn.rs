@@ -1,4 +1,5 @@
-//! A drawing that is sent as its difference from the last one gives the whole drawing.
+//! The page is sent only what changed since the last drawing. These tests apply that difference, as the page does,
+//! and compare the result with the whole drawing.
 #![allow(clippy::disallowed_methods, reason = "the common part reads the examples")]
 
 mod common;

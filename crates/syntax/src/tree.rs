@@ -252,8 +252,8 @@ impl Inner {
 }
 
 impl Known {
-    /// Puts what lies behind the mark that was met behind what was read. `None` if there are then too
-    /// many problems.
+    /// Appends the known rest of the text to the part that was read anew. The rest begins at the mark `met`.
+    /// `None` if there are then too many problems.
     fn join(mut self, reading: &mut Reading, met: usize, base: &Base, change: Change) -> Option<()> {
         let by = change.by();
         let mut marks = reading.before.split_off(met.min(reading.before.len()));

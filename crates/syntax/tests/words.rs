@@ -1,5 +1,5 @@
-//! The table of words and the parser do not drift apart: each word of the table is accepted at its place, and
-//! each word that the parser asks for stands in the table.
+//! Compares the table of words with the parser: the parser accepts each word of the table at its place, and the
+//! table has each word that the parser looks for.
 #![allow(clippy::disallowed_methods, reason = "the test reads the sources of the parser")]
 
 use std::path::Path;
@@ -79,7 +79,7 @@ fn is_known(word: &str) -> bool {
         || il::mnemonic(word).is_some()
 }
 
-/// Words that the parser knows in order to say what is written instead of them.
+/// Words of other languages. The parser knows them only to suggest the right word.
 const OF_OTHERS: &[&str] = &[
     "BIT",
     "BOOLEAN",

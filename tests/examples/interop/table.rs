@@ -1,4 +1,4 @@
-//! The table: its rows, and behind them the reasons why something was not taken.
+//! Prints the result: a table with a row for each program, then the reasons why files were refused.
 
 use std::collections::BTreeMap;
 use std::io::Write as _;

@@ -1,5 +1,5 @@
-//! The TextMate grammar, which VS Code and others read. It sees one line at a time and knows no names, so a
-//! word that may be a name is coloured where it stands as in the grammar; the language server knows better.
+//! The TextMate grammar, for VS Code and other editors. It sees one line at a time and does not know which names
+//! a chart declares. So it colours a word of the language by its position; the language server corrects that.
 
 use serde_json::{Value, json};
 
@@ -7,7 +7,7 @@ use super::Vocabulary;
 
 /// A name, also in back-ticks, and a number as the name of a step.
 const NAME: &str = r"[_\p{L}\p{Nl}][_\p{L}\p{Nl}\p{Nd}\p{Pc}\p{Mc}]*";
-/// Behind a word that begins something stands none of these: there it is a name.
+/// If one of these signs follows, the word is a name and not a word of the language.
 const NOT_A_NAME: &str = r"(?!\s*(?::=|->|→|=>|[,.]|:(?!=)))";
 
 /// The grammar as JSON.

@@ -116,8 +116,8 @@ pub(crate) fn size(net: &Net) -> (usize, usize) {
     }
 }
 
-/// The network as the generator of Beremiz takes it. That generator sorts the ways that meet, and cannot compare a lone
-/// contact at the left rail with a series: a contact `TRUE` stands before the lone one.
+/// The network in a form that Beremiz can generate code for. Beremiz sorts parallel branches and fails if a branch
+/// is a single contact beside a series. So a contact `TRUE` is put before the single contact.
 fn sortable(net: &Net) -> Net {
     match net {
         Net::Wire | Net::Contact { .. } => net.clone(),

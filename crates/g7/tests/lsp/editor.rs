@@ -51,12 +51,12 @@ impl Editor {
         Editor::open(URI, text)
     }
 
-    /// An editor with the file of an address open.
+    /// A new editor in which a text is open under an address.
     pub(crate) fn open(uri: &str, text: &str) -> Editor {
         Editor::new().opened(uri, text)
     }
 
-    /// The editor, with the file of an address open.
+    /// Opens a text under an address in this editor.
     pub(crate) fn opened(mut self, uri: &str, text: &str) -> Editor {
         let editor = &mut self;
         editor.tell(

@@ -1,5 +1,5 @@
-//! Leaves out guarded parts without a statement. Compilers such as matiec refuse `IF a THEN END_IF`, and a `;` alone
-//! as well.
+//! Removes arms of IF and CASE that have no statement. Compilers such as matiec refuse `IF a THEN END_IF`, with a
+//! single `;` in it as well.
 //!
 //! `standard` ends with it, and so do writers that put bodies into guards of their own.
 
@@ -9,7 +9,7 @@ use g7_model::{
 
 use crate::nodes;
 
-/// Leaves the parts out everywhere, and bodies before and behind the charts that have no statement left.
+/// Removes empty arms everywhere, and a `pre` or `post` that has no statement left.
 pub(crate) fn without_idle(document: &mut Document) {
     document.items.retain_mut(|item| match item {
         Item::Pre(Body::St(block), _) | Item::Post(Body::St(block), _) => {
@@ -53,12 +53,12 @@ fn of_chart(item: &mut ChartItem) {
     }
 }
 
-/// Leaves the parts out of a list.
+/// Removes empty arms from a list of statements.
 fn shorter(list: &mut Vec<Stmt>) {
     *list = std::mem::take(list).into_iter().filter_map(kept).collect();
 }
 
-/// The statement without such parts; None if nothing is left of it.
+/// The statement without empty arms; `None` if nothing is left of it.
 fn kept(mut stmt: Stmt) -> Option<Stmt> {
     let at = stmt.at.0;
     match stmt.kind {
@@ -80,7 +80,8 @@ fn kept(mut stmt: Stmt) -> Option<Stmt> {
     Some(stmt)
 }
 
-/// IF: behind an arm without statements the rest runs where its condition does not hold.
+/// An IF without its empty arms. The arms after an empty one may run only if its condition is false: `NOT` of
+/// that condition guards them.
 fn chosen(mut arms: Vec<(Expr, Vec<Stmt>)>, otherwise: Vec<Stmt>, at: Span) -> Option<Stmt> {
     let Some(idle) = arms.iter().position(|a| a.1.is_empty()) else {
         return Some(Stmt { kind: StmtKind::If(arms, otherwise), at: at.into() });
@@ -94,7 +95,8 @@ fn chosen(mut arms: Vec<(Expr, Vec<Stmt>)>, otherwise: Vec<Stmt>, at: Span) -> O
     (!arms.is_empty()).then(|| Stmt { kind: StmtKind::If(arms, Vec::new()), at: at.into() })
 }
 
-/// CASE: where ELSE has statements, labels without any are asked for before.
+/// A CASE without its empty arms. If it has an ELSE, the values of the empty arms must not reach it: an IF in front
+/// of the CASE keeps them out.
 fn of_case(selector: Expr, mut arms: Vec<CaseArm>, otherwise: Vec<Stmt>, at: Span) -> Option<Stmt> {
     let mut idle = nodes::boolean(false, at);
     for (from, to) in arms.iter().filter(|a| a.body.is_empty()).flat_map(|a| &a.labels) {

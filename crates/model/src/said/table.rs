@@ -1,6 +1,7 @@
 //! The table of texts in the other languages, and how the holes of a row are filled.
 //!
-//! A row is three lines: the text as `say!` has it, then `fr ` and `pt ` with the same holes, in any order.
+//! A row has three lines: the English text exactly as in `say!`, the French text behind `fr `, and the Portuguese
+//! text behind `pt `. All three have the same holes; their order may differ.
 //! A hole is named as in English; a hole without a name is `{}`, the next one, or `{0}`, `{1}`, its number
 //! among all holes of the English text. `tests/tests/tidy/tongues.rs` holds the table to the sources.
 
@@ -41,7 +42,7 @@ pub(super) fn in_language(template: &str, language: Language) -> Option<&'static
     (!told.is_empty()).then_some(told)
 }
 
-/// The holes of a text in their order: the name of each, without its form.
+/// The names in the holes of a text, in their order. `{a:?}` has the name `a`, `{}` has none.
 fn holes(text: &str) -> Vec<&str> {
     let mut names = Vec::new();
     pieces(text, &mut |piece| {

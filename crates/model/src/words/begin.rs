@@ -2,16 +2,45 @@
 
 use super::row::Word;
 
+// These words begin an item of a file and an item of a chart alike.
+const INPUT: Word = Word::reserved(
+    "input",
+    ["a value from the plant", "une valeur qui vient du procédé", "um valor que vem do processo"],
+);
+const OUTPUT: Word = Word::reserved(
+    "output",
+    ["a value for the plant", "une valeur pour le procédé", "um valor para o processo"],
+);
+const SECTION: Word = Word::reserved(
+    "transition",
+    [
+        "the receptivity of a transition as a section",
+        "la réceptivité d’une transition en section",
+        "a recetividade de uma transição numa secção",
+    ],
+)
+.then(" section");
+const PRE: Word = Word::free(
+    "pre",
+    [
+        "statements before each evolution",
+        "des instructions avant chaque évolution",
+        "instruções antes de cada evolução",
+    ],
+);
+const POST: Word = Word::free(
+    "post",
+    [
+        "statements after each evolution",
+        "des instructions après chaque évolution",
+        "instruções depois de cada evolução",
+    ],
+);
+
 /// Words that an item of a file can begin with.
 pub const FILE: &[Word] = &[
-    Word::reserved(
-        "input",
-        ["a value from the plant", "une valeur qui vient du procédé", "um valor que vem do processo"],
-    ),
-    Word::reserved(
-        "output",
-        ["a value for the plant", "une valeur pour le procédé", "um valor para o processo"],
-    ),
+    INPUT,
+    OUTPUT,
     Word::reserved("var", ["an internal variable", "une variable interne", "uma variável interna"]),
     Word::reserved("const", ["a constant", "une constante", "uma constante"]),
     Word::reserved("chart", ["a partial chart", "un grafcet partiel", "um grafcet parcial"]),
@@ -24,32 +53,10 @@ pub const FILE: &[Word] = &[
         ["a chart that steps call", "un grafcet que des étapes appellent", "um grafcet que as etapas chamam"],
     ),
     Word::reserved("action", ["a named action", "une action nommée", "uma ação com nome"]),
-    Word::reserved(
-        "transition",
-        [
-            "the receptivity of a transition as a section",
-            "la réceptivité d’une transition en section",
-            "a recetividade de uma transição numa secção",
-        ],
-    )
-    .then(" section"),
+    SECTION,
     Word::reserved("function", ["a function", "une fonction", "uma função"]),
-    Word::free(
-        "pre",
-        [
-            "statements before each evolution",
-            "des instructions avant chaque évolution",
-            "instruções antes de cada evolução",
-        ],
-    ),
-    Word::free(
-        "post",
-        [
-            "statements after each evolution",
-            "des instructions après chaque évolution",
-            "instruções depois de cada evolução",
-        ],
-    ),
+    PRE,
+    POST,
     Word::reserved("plant", ["a model of the process", "un modèle du procédé", "um modelo do processo"]),
     Word::free(
         "test",
@@ -131,14 +138,8 @@ pub const CHART: &[Word] = &[
         ],
     )
     .then(" step"),
-    Word::reserved(
-        "input",
-        ["a value from the plant", "une valeur qui vient du procédé", "um valor que vem do processo"],
-    ),
-    Word::reserved(
-        "output",
-        ["a value for the plant", "une valeur pour le procédé", "um valor para o processo"],
-    ),
+    INPUT,
+    OUTPUT,
     Word::reserved(
         "var",
         ["a variable of this chart", "une variable de ce grafcet", "uma variável deste grafcet"],
@@ -155,31 +156,9 @@ pub const CHART: &[Word] = &[
             "uma ação com nome deste grafcet",
         ],
     ),
-    Word::reserved(
-        "transition",
-        [
-            "the receptivity of a transition as a section",
-            "la réceptivité d’une transition en section",
-            "a recetividade de uma transição numa secção",
-        ],
-    )
-    .then(" section"),
-    Word::free(
-        "pre",
-        [
-            "statements before each evolution",
-            "des instructions avant chaque évolution",
-            "instruções antes de cada evolução",
-        ],
-    ),
-    Word::free(
-        "post",
-        [
-            "statements after each evolution",
-            "des instructions après chaque évolution",
-            "instruções depois de cada evolução",
-        ],
-    ),
+    SECTION,
+    PRE,
+    POST,
 ];
 
 /// Words that an action can begin with, qualifiers aside.
