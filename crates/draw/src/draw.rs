@@ -124,6 +124,7 @@ fn alternatives(chart: &Chart) -> HashMap<&str, (usize, usize)> {
 }
 
 impl<'a> Symbols<'a> {
+    #[inline(never)]
     pub(crate) fn new(chart: &'a Chart, options: &Options) -> Symbols<'a> {
         let steps: Vec<_> = chart.steps().map(|s| (s, step(s, options))).collect();
         let alternatives = alternatives(chart);
@@ -185,6 +186,7 @@ impl<'a> Symbols<'a> {
         items
     }
 
+    #[inline(never)]
     fn links(&self, placement: &Placement, items: &mut Vec<Inked>) {
         for (index, l) in (0..).zip(&placement.links) {
             let mut picture = Picture::default();
@@ -233,6 +235,7 @@ impl Names {
         }
     }
 
+    #[inline(never)]
     fn connector(&self, index: u32, c: &Connector, placement: &Placement, pages: &[u32]) -> Inked {
         let named = self.named(c);
         let name = named.and_then(|s| self.steps.get(s as usize)).map_or("", |s| s);

@@ -42,6 +42,7 @@ impl Row {
     }
 
     /// A row for each block.
+    #[inline(never)]
     pub(crate) fn all(t: &Tables, l: &Layout) -> Box<[Row]> {
         let mut uses = vec![0u16; t.blocks.len()];
         for c in &t.contributions {

@@ -64,6 +64,7 @@ pub enum LoadError {
 }
 
 /// Checks that tables are a program.
+#[inline(never)]
 pub(crate) fn check(t: &Tables) -> Result<(), LoadError> {
     let mut check = Check { t, depth: vec![-1; t.code.len()] };
     check.sizes()?;
@@ -87,6 +88,7 @@ pub(crate) fn writes(op: &Op) -> usize {
 }
 
 impl Check<'_> {
+    #[inline(never)]
     fn sizes(&self) -> Checked {
         let t = self.t;
         let sizes = [
@@ -121,6 +123,7 @@ impl Check<'_> {
         }
     }
 
+    #[inline(never)]
     fn steps(&mut self) -> Checked {
         let t = self.t;
         for (i, step) in t.steps.iter().enumerate() {
@@ -171,6 +174,7 @@ impl Check<'_> {
         Ok(())
     }
 
+    #[inline(never)]
     fn transitions(&mut self) -> Checked {
         let t = self.t;
         for (i, tr) in t.transitions.iter().enumerate() {
@@ -211,6 +215,7 @@ impl Check<'_> {
         Ok(())
     }
 
+    #[inline(never)]
     fn actions(&mut self) -> Checked {
         let t = self.t;
         for (i, a) in t.actions.iter().enumerate() {
@@ -255,6 +260,7 @@ impl Check<'_> {
         Ok(())
     }
 
+    #[inline(never)]
     fn watches(&mut self) -> Checked {
         let t = self.t;
         for (i, w) in t.watches.iter().enumerate() {
@@ -285,6 +291,7 @@ impl Check<'_> {
         Ok(())
     }
 
+    #[inline(never)]
     fn rest(&mut self) -> Checked {
         let t = self.t;
         // By chart: an order that names steps has been seen.
@@ -384,6 +391,7 @@ impl Check<'_> {
     }
 
     /// Checks that the operands of an instruction are there.
+    #[inline(never)]
     fn operands(&self, op: &Op, pc: u32) -> Checked {
         let t = self.t;
         let row = pc as usize;

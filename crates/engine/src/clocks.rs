@@ -96,6 +96,7 @@ pub(crate) struct Clocks {
     pub(crate) absolute: bool,
 }
 
+#[inline(never)]
 pub(crate) fn clocks(t: &Tables, l: &Layout) -> Clocks {
     let code = Reading::new(t);
     let (stamps, unread) = code.stamps(l);

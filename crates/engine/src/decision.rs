@@ -73,6 +73,7 @@ pub(crate) struct Decisions {
 
 impl Decisions {
     /// Finds the codes of a program that are decisions.
+    #[inline(never)]
     pub(crate) fn new(t: &Tables, l: &Layout) -> Decisions {
         let mut building = Building { t, l, tests: Vec::new(), comparisons: Vec::new() };
         let mut first = vec![(0, NONE); t.code.len()];

@@ -65,6 +65,7 @@ pub(crate) struct Gates {
 
 impl Gates {
     /// Finds the gates of a program.
+    #[inline(never)]
     pub(crate) fn new(t: &Tables, l: &Layout, d: &Decisions) -> Gates {
         let used = used(t);
         let mut givers = vec![0u32; t.blocks.len()];

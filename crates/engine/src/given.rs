@@ -32,6 +32,7 @@ pub(crate) struct Contributes {
 }
 
 impl Given {
+    #[inline(never)]
     pub(crate) fn new(t: &Tables, l: &Layout) -> Given {
         // The time of each input of each block: the same in all contributions, or none.
         let mut times = vec![Times::default(); t.blocks.len()];

@@ -132,6 +132,7 @@ pub(crate) struct Joined {
 }
 
 impl Joined {
+    #[inline(never)]
     pub(crate) fn new(t: &Tables, l: &Layout) -> Joined {
         let pushed = |op: &Op| if let Op::Push(v) = op { Some(*v) } else { None };
         let mut constants: Vec<u64> = t.code.iter().filter_map(pushed).collect();

@@ -98,6 +98,7 @@ pub(crate) struct Layout {
 }
 
 impl Layout {
+    #[inline(never)]
     pub(crate) fn new(t: &Tables) -> Layout {
         let mut next = head::WORDS;
         let n = |len: usize| u32::try_from(len).unwrap_or(u32::MAX);
@@ -161,6 +162,7 @@ impl Layout {
 
     /// The top words of the sets whose members act in a pass or at its end, without those that
     /// are always empty.
+    #[inline(never)]
     pub(crate) fn awake(&self, t: &Tables) -> Box<[u32]> {
         let sets = [
             (&self.edged, t.watches.len()),

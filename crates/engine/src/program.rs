@@ -106,6 +106,7 @@ impl Program {
         if row == NONE { None } else { self.tables.extras.get(row as usize) }
     }
 
+    #[inline(never)]
     fn build(t: Tables) -> Program {
         let layout = Layout::new(&t);
         let always = t.watches.iter().enumerate().filter(|(_, w)| w.always).map(|(i, _)| i as u32).collect();
@@ -198,6 +199,7 @@ fn reads_time(op: &Op) -> bool {
     )
 }
 
+#[inline(never)]
 fn word_index(t: &Tables) -> Box<[u32]> {
     let mut k = 0u32;
     let mut index = Vec::with_capacity(t.init.len() + 1);
@@ -211,6 +213,7 @@ fn word_index(t: &Tables) -> Box<[u32]> {
 }
 
 /// Distinct words that each stored action can write, added up.
+#[inline(never)]
 fn commit_room(t: &Tables) -> usize {
     let lists = t.action_lists.iter().copied();
     let events = t.events.iter().map(|e| e.action);
@@ -227,6 +230,7 @@ fn commit_room(t: &Tables) -> usize {
         .fold(0, usize::saturating_add)
 }
 
+#[inline(never)]
 fn text_room(code: &[Op]) -> usize {
     let any = code.iter().any(|op| {
         matches!(

@@ -130,6 +130,7 @@ impl<'a> Parts<'a> {
     }
 
     /// A row for each step.
+    #[inline(never)]
     pub(crate) fn hot(self, decisions: &Decisions, moves: &[Move]) -> Box<[Hot]> {
         let Parts { t, l, .. } = self;
         let none =
@@ -157,6 +158,7 @@ impl<'a> Parts<'a> {
     }
 
     /// A row for each transition. `any` says that transitions can be plain under the rules.
+    #[inline(never)]
     pub(crate) fn moves(self, any: bool) -> Box<[Move]> {
         let row = |tr: &Transition| {
             let (from, to) = (tr.from.0, tr.to.0);

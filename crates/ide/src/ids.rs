@@ -2,7 +2,7 @@
 //! and the item at a place of the text.
 
 use g7_edit::ItemId;
-use g7_model::{Chart, Document, Span, Step};
+use g7_model::{Chart, ChartItem, Document, Span, Step};
 
 /// The id of a step.
 pub fn step(chart: &str, name: &str) -> String {
@@ -53,22 +53,54 @@ pub fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
     })
 }
 
-/// The innermost part that contains a place.
+/// The innermost part that contains a place. A page asks this for each problem of a chart, so the parts
+/// before the place are passed over without a look: they stand in the order of the text.
 pub fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
     let chart = document.charts().find(|c| holds(c.at.0, place))?;
-    let only = |c: &Chart| std::ptr::eq(c, chart);
-    things(document)
-        .filter(|(at, thing)| {
-            let mine = match thing {
-                Thing::Step(c, _) | Thing::Action(c, ..) | Thing::Transition(c, _) => only(c),
-            };
-            mine && holds(*at, place)
-        })
-        .min_by_key(|(at, _)| at.end - at.start)
-        .map(|(_, thing)| thing)
+    let behind = chart.items.partition_point(|item| item.at().start <= place.start);
+    let found = chart.items.get(..behind)?.last().filter(|item| holds(item.at(), place))?;
+    match found {
+        ChartItem::Step(s) => {
+            let action = s.actions.iter().position(|a| holds(a.at.0, place));
+            Some(action.map_or(Thing::Step(chart, s), |i| Thing::Action(chart, s, i)))
+        }
+        ChartItem::Transition(t) => {
+            Some(Thing::Transition(chart, chart.transitions().position(|other| std::ptr::eq(other, t))?))
+        }
+        _ => None,
+    }
 }
 
 /// True if a place lies inside another.
 pub fn holds(outer: Span, inner: Span) -> bool {
     outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Charts with chains, transitions on one line, actions, and what has no id between them.
+    const TEXT: &str = "input a, b : BOOL\noutput V : BOOL\n\
+        chart A {\n  var n : INT\n  initial step 0 { N V  P1 n := n + 1 }\n  0 -> 1 when a -> 2 when b -> 0 when a\n\
+        \x20 step 1  step 2 { S V }  1 -> 2 when b  2 -> (1, 3) when 1\n  action again := { n := 0; }\n  step 3 { again }\n}\n\
+        chart B { initial step 0  0 -> 0 when not a }\n";
+
+    #[test]
+    fn the_innermost_part_is_found_at_each_place() {
+        let document = g7_syntax::parse(TEXT, g7_model::FileId(0)).0;
+        assert!(document.charts().count() == 2);
+        let mut found = std::collections::BTreeSet::new();
+        for start in 0..TEXT.len() as u32 {
+            for end in [start, start + 1, start + 6] {
+                let place = Span { file: g7_model::FileId(0), start, end };
+                let inside = things(&document).filter(|(at, _)| holds(*at, place));
+                let want = inside.min_by_key(|(at, _)| at.end - at.start).map(|(_, thing)| thing.id());
+                let got = at(&document, place).map(Thing::id);
+                assert_eq!(got, want, "{:?}", TEXT.get(start as usize..end as usize));
+                found.extend(got);
+            }
+        }
+        assert_eq!(found.len(), things(&document).count(), "{found:?}");
+    }
 }

@@ -14,7 +14,9 @@ const decoder = new TextDecoder();
 async function load(address: string): Promise<Door> {
   const answer = await fetch(address);
   if (!answer.ok) throw new Error(`g7.wasm: ${answer.status}`);
-  const module = await WebAssembly.instantiate(await answer.arrayBuffer(), {});
+  // While it streams, it is compiled, and the browser keeps the compiled code for the next visit.
+  const streams = answer.headers.get('content-type') === 'application/wasm';
+  const module = await (streams ? WebAssembly.instantiateStreaming(answer, {}) : WebAssembly.instantiate(await answer.arrayBuffer(), {}));
   return module.instance.exports as unknown as Door;
 }
 

@@ -123,8 +123,39 @@ impl<'e, 'f> Question<'e, 'f> {
             }
             *slot = Some(value);
         }
-        // Most branches ask for other variables than those beside them: that is seen without clauses.
-        if all { Some(true) } else { clauses::possible(&self.atoms, &self.parts, &self.goals) }
+        // Most branches ask for other variables than those beside them, and most receptivities come true
+        // with the first operand of each OR: that is seen without clauses.
+        if all || self.goals.iter().all(|goal| self.comes_true(*goal, true, &mut values)) {
+            return Some(true);
+        }
+        clauses::possible(&self.atoms, &self.parts, &self.goals)
+    }
+
+    /// Gives truths that are still open such values that a part has this value. Returns false if the
+    /// first try for each OR fails, or if the part is about more than truths.
+    fn comes_true(&self, part: Part, value: bool, values: &mut Vec<Option<bool>>) -> bool {
+        let mut either = |a: Part, b: Part| {
+            let before = values.clone();
+            self.comes_true(a, value, values) || {
+                *values = before;
+                self.comes_true(b, value, values)
+            }
+        };
+        match self.parts.get(part.0) {
+            Some(Formula::Const(v)) => *v == value,
+            Some(Formula::Not(a)) => self.comes_true(*a, !value, values),
+            Some(Formula::And(a, b)) if !value => either(*a, *b),
+            Some(Formula::Or(a, b)) if value => either(*a, *b),
+            Some(Formula::And(a, b) | Formula::Or(a, b)) => {
+                self.comes_true(*a, value, values) && self.comes_true(*b, value, values)
+            }
+            Some(Formula::Among(atom, Values::True)) => {
+                let truth = self.atoms.get(*atom).is_some_and(|a| matches!(a.sort, Sort::Truth));
+                let Some(slot) = values.get_mut(*atom).filter(|_| truth) else { return false };
+                *slot.get_or_insert(value) == value
+            }
+            Some(Formula::Among(..) | Formula::Xor(..) | Formula::OneOf(_)) | None => false,
+        }
     }
 
     /// The value that a goal alone gives to an atom.

@@ -104,6 +104,7 @@ struct Terms<'a> {
 
 impl Lower<'_> {
     /// Lowers the actions of all charts, in text order.
+    #[inline(never)]
     pub(super) fn actions(&mut self) -> Actions {
         let unit = self.unit;
         let all = self.associations();
@@ -279,6 +280,7 @@ impl Lower<'_> {
         tree::Stmt { kind: tree::StmtKind::If(vec![(nobody, vec![choose])], Vec::new()), at }
     }
 
+    #[inline(never)]
     fn action(&mut self, a: &mut Actions, all: &Associations, place: In, kind: &ActionKind) {
         let none = Code::default();
         match kind {

@@ -14,6 +14,7 @@ use crate::ir::{self, ActionKind, ChartId, ChartRole, StepId, StepSort};
 impl Lower<'_> {
     /// Finds who enables, masks and calls what, and gives tasks and frozen
     /// charts their words.
+    #[inline(never)]
     pub(super) fn look_at_orders(&mut self) {
         let unit = self.unit;
         let charts = unit.charts.len();
@@ -68,6 +69,7 @@ impl Lower<'_> {
     }
 
     /// Period rows, equal periods sharing one; an expansion has its chart's.
+    #[inline(never)]
     pub(super) fn look_at_periods(&mut self) {
         self.t.periods = vec![0];
         let mut known = HashMap::from([(0, 0)]);
@@ -89,6 +91,7 @@ impl Lower<'_> {
 
     /// Groups and charts, with their initial situations, and the steps active
     /// at the start.
+    #[inline(never)]
     pub(super) fn groups(&mut self) {
         let rows = self.plan.groups.clone();
         for (i, (_, start, end)) in rows.iter().enumerate() {
@@ -185,6 +188,7 @@ impl Lower<'_> {
     /// By step: the groups it counts in. Only those of expansions are counted,
     /// since only macro-steps have an activity of their own; what stands for a
     /// macro-step inside is no step of the expansion.
+    #[inline(never)]
     pub(super) fn counted_groups(&self) -> Lists<GroupId> {
         let mut lists = Lists::default();
         if self.plan.groups.len() == self.plan.outer.len() {
@@ -201,6 +205,7 @@ impl Lower<'_> {
     }
 
     /// By enclosing step: the groups it encloses, and the steps it activates.
+    #[inline(never)]
     pub(super) fn enclosures(&self) -> (Lists<GroupId>, Lists<Number>) {
         let (mut groups, mut links) = (Lists::default(), Lists::default());
         for (i, step) in self.unit.steps.iter().enumerate() {
@@ -234,6 +239,7 @@ impl Lower<'_> {
 
     /// Fills the table of forcing orders, in the partial order of the charts.
     /// Returns the first row of each step that gives any, by step.
+    #[inline(never)]
     pub(super) fn orders(&mut self) -> Vec<(u32, Rows)> {
         let unit = self.unit;
         let mut found: Vec<(u32, ChartId, &ir::Situation)> = Vec::new();

@@ -222,6 +222,7 @@ impl Lower<'_> {
     }
 
     /// Gives each step what only few have.
+    #[inline(never)]
     fn extras(&mut self, a: &mut actions::Actions) {
         let mut groups = self.counted_groups();
         let orders = self.orders();

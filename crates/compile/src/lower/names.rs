@@ -14,6 +14,7 @@ use crate::ir::{self, StepId, StepSort, VarClass, VarId};
 use crate::symbols::{BlockSymbol, ChartSymbol, MacroSymbol, Symbols, Variable};
 
 impl Lower<'_> {
+    #[inline(never)]
     pub(super) fn symbols(&self, ranks: &[Origin], a: &mut Actions) -> Symbols {
         let unit = self.unit;
         let mut s = Symbols {

@@ -24,6 +24,7 @@ impl Lower<'_> {
     /// The words behind the system bits, made before all else: they live on from
     /// scan to scan. `%S0` and `%S1` belong together, since a restart says which of
     /// them is TRUE; and the bits that act on charts need `%S0`.
+    #[inline(never)]
     pub(super) fn look_at_system_bits(&mut self) {
         let named = |l: &Self, name| l.system_var(name).is_some();
         let acts = self.has_acting_bits();
@@ -55,6 +56,7 @@ impl Lower<'_> {
     }
 
     /// Everything that runs besides the chart.
+    #[inline(never)]
     pub(super) fn system(&mut self) {
         let unit = self.unit;
         let mut pre = self.before_pre();

@@ -56,6 +56,7 @@ impl Parts {
 
 impl Lower<'_> {
     /// The transitions by rank.
+    #[inline(never)]
     pub(super) fn ranks(&self) -> Vec<Origin> {
         let rules = &self.unit.rules;
         let mut order: Vec<(u32, u32, u32, TransitionId)> = Vec::with_capacity(self.unit.transitions.len());
@@ -82,6 +83,7 @@ impl Lower<'_> {
     }
 
     /// Fills the tables of transitions.
+    #[inline(never)]
     pub(super) fn transitions(&mut self, ranks: &[Origin], clearing: &Clearing) {
         let steps = self.plan.source.len();
         let (mut uses, mut joint) = (vec![0u8; steps], vec![false; steps]);

@@ -85,6 +85,7 @@ pub(super) fn uses<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Uses<'a> {
 }
 
 impl<'a> Walk<'a> {
+    #[inline(never)]
     fn actions(&mut self) {
         let unit = self.unit;
         // Pulses of bodies run within the pass in some profiles.

@@ -78,6 +78,7 @@ impl Lower<'_> {
 
     /// Tells every word, step, group and watch who watches it. Returns the lists
     /// of the steps.
+    #[inline(never)]
     pub(super) fn readers(&mut self) -> Lists<WatchId> {
         let mut steps = Lists::default();
         let mut groups: Lists<WatchId> = Lists::default();

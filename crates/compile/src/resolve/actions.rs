@@ -22,6 +22,7 @@ enum Governed {
 
 impl Resolver<'_, '_> {
     /// Resolves the actions of all steps and all transitions of a chart.
+    #[inline(never)]
     pub(super) fn fill_chart(&mut self, id: ChartId, chart: &WrittenChart) {
         let first = self.unit.charts.get(id.index()).map_or(0, |c| c.steps.start);
         for (step, written) in (first..).map(StepId).zip(chart.steps()) {
@@ -56,6 +57,7 @@ impl Resolver<'_, '_> {
 
     /// Resolves a transition whose steps all exist. A receptivity that cannot be resolved becomes
     /// FALSE, so that the structure can still be checked.
+    #[inline(never)]
     fn transition(&mut self, chart: ChartId, t: &WrittenTransition) -> Option<Transition> {
         // In a chain the preceding steps are written once, as the succeeding steps of the
         // transition before it.
@@ -127,6 +129,7 @@ impl Resolver<'_, '_> {
         }
     }
 
+    #[inline(never)]
     fn action(&mut self, step: StepId, action: &WrittenAction) -> Option<ActionKind> {
         match &action.kind {
             Written::Qualified { qualifier, time, target, condition } => {

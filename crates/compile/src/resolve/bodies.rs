@@ -58,6 +58,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     /// Resolves all code outside of steps, in the order of declaration.
+    #[inline(never)]
     pub(super) fn fill_bodies(&mut self, doc: &'d Document) {
         let mut next = Next::default();
         for item in &doc.items {
@@ -174,6 +175,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     /// Reports sections that no transition uses.
+    #[inline(never)]
     pub(super) fn unused_sections(&mut self) {
         for (k, s) in self.unit.sections.iter().enumerate() {
             if self.section_uses.contains_key(&SectionId(k as u32)) {

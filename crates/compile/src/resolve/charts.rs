@@ -25,6 +25,7 @@ enum Depth {
 
 impl<'d> Resolver<'_, 'd> {
     /// Rows and names of all charts and steps.
+    #[inline(never)]
     pub(super) fn declare_charts(&mut self, charts: &[&'d WrittenChart]) {
         let steps = charts.iter().map(|c| c.steps().count()).sum();
         self.unit.steps.reserve(steps);
@@ -123,6 +124,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     /// Links macro-steps to their expansions and enclosing steps to their charts.
+    #[inline(never)]
     pub(super) fn link_charts(&mut self, charts: &[&WrittenChart]) {
         for (k, chart) in charts.iter().enumerate() {
             let first = self.unit.charts.get(k).map_or(0, |c| c.steps.start);
@@ -139,6 +141,7 @@ impl<'d> Resolver<'_, 'd> {
         self.name_paths();
     }
 
+    #[inline(never)]
     fn link_expansion(&mut self, step: StepId, name: &Name) {
         let Some(c) = self.chart_named(name) else { return };
         let Some(chart) = self.unit.charts.get(c.index()) else { return };
@@ -181,6 +184,7 @@ impl<'d> Resolver<'_, 'd> {
         }
     }
 
+    #[inline(never)]
     fn link_enclosed(&mut self, step: StepId, action: &Action) {
         let Written::Order(Order::Enclose(name)) = &action.kind else { return };
         let Some(s) = self.unit.steps.get(step.index()) else { return };

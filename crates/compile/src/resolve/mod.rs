@@ -99,6 +99,7 @@ pub fn resolve_query<'d>(
 }
 
 /// Scan time and target.
+#[inline(never)]
 fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
     let (mut cycle, mut target) = (None, None);
     for item in &doc.items {
@@ -132,6 +133,7 @@ fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
 
 /// Declares all names except those of charts and steps; then resolves the values of the variables,
 /// those of the file first.
+#[inline(never)]
 fn declare_names<'d>(r: &mut Resolver<'_, 'd>, doc: &'d Document, charts: &[&'d Chart]) {
     let mut declared = Vec::new();
     for item in &doc.items {

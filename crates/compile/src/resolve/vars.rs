@@ -40,6 +40,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     /// Declares the names of a declaration; values are resolved after all names are known.
+    #[inline(never)]
     pub(super) fn declare(&mut self, chart: Option<ChartId>, decl: &'d VarDecl) -> Vec<VarId> {
         if !self.sensible(decl) {
             return Vec::new();
@@ -145,6 +146,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     /// Resolves the values that a declaration gives to its names.
+    #[inline(never)]
     pub(super) fn give_values(&mut self, chart: Option<ChartId>, decl: &VarDecl, ids: &[VarId]) {
         if matches!(decl.ty, Type::Fb(_)) {
             return;

@@ -47,6 +47,7 @@ impl Shapes<'_> {
 
     /// The sequences beside a block's nodes, divided into left and right, with their heights. The
     /// block moves down if one of them begins above its top.
+    #[inline(never)]
     fn sides(&mut self, b: usize) -> (Vec<Side>, Vec<Side>) {
         let (mut left, mut right, mut heads) = (Vec::new(), Vec::new(), Vec::<Side>::new());
         let mut nodes: Vec<u32> = Vec::new();
@@ -95,6 +96,7 @@ impl Shapes<'_> {
     }
 
     /// Moves all items of a block down.
+    #[inline(never)]
     fn lower(&mut self, b: usize, by: i32) {
         let block = &mut self.blocks[b];
         block.foot += by;
@@ -124,6 +126,7 @@ impl Shapes<'_> {
         self.low(s).max(self.blocks[s.block as usize].foot + DOUBLE) + CLEAR
     }
 
+    #[inline(never)]
     fn place_right(&mut self, b: usize, bands: &[Band], right: Vec<Side>) {
         let rows = bands.iter().flat_map(|s| [s.y0, s.y1]);
         let rows = rows.chain(right.iter().flat_map(|s| [s.y - CLEAR, s.y + self.met(s)]));
@@ -144,6 +147,7 @@ impl Shapes<'_> {
         self.blocks[b].right = most;
     }
 
+    #[inline(never)]
     fn place_left(
         &mut self,
         b: usize,
@@ -232,6 +236,7 @@ impl Shapes<'_> {
     }
 
     /// The loops that close inside a block.
+    #[inline(never)]
     fn loops(&self, exits: &[Exit], entries: &[Entry], matched: &mut [bool]) -> Vec<Left> {
         let mut found: Vec<(u32, usize)> = Vec::new();
         for (k, e) in exits.iter().enumerate() {

@@ -99,6 +99,7 @@ impl Reduction<'_> {
         }
     }
 
+    #[inline(never)]
     fn add(&mut self, from: u32, to: u32, branch: Branch) {
         if let Some(&other) = self.between.get(&(from, to)).filter(|e| self.edges[**e as usize].live) {
             self.merge(other, branch);
@@ -124,6 +125,7 @@ impl Reduction<'_> {
     }
 
     /// Adds a second sequence between two nodes: both become branches.
+    #[inline(never)]
     fn merge(&mut self, other: u32, branch: Branch) {
         let edge = self.edges[other as usize];
         let (from, to) = (edge.from, edge.to);
@@ -175,6 +177,7 @@ impl Reduction<'_> {
     }
 
     /// Joins a node that has one link in and one link out to its neighbours.
+    #[inline(never)]
     fn series(&mut self, n: u32) {
         let (Some(a), Some(b)) = (self.only(n, false), self.only(n, true)) else { return };
         self.settle(n);
@@ -278,6 +281,7 @@ impl Reduction<'_> {
 
     /// Everything that follows a node without another way on: one main sequence, or sequences of
     /// similar length side by side.
+    #[inline(never)]
     fn close_below(&mut self, n: u32) -> (Chain, Option<(u32, Vec<u32>)>) {
         let mut groups = self.groups(n, true);
         let Some(most) = groups.iter().map(|p| p.branch.chain.rows).max() else {
@@ -301,6 +305,7 @@ impl Reduction<'_> {
     }
 
     /// Everything that precedes a node without another way in.
+    #[inline(never)]
     fn close_above(&mut self, n: u32) -> Chain {
         let mut all = std::mem::take(&mut self.above[n as usize]);
         all.sort_by_key(|b| b.last);
@@ -330,6 +335,7 @@ impl Reduction<'_> {
     }
 
     /// Breaks links until the reduction can go on.
+    #[inline(never)]
     fn cut(&mut self) {
         let mut found: Vec<(u64, u32)> = Vec::new();
         for e in 0..self.edges.len() as u32 {

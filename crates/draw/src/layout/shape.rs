@@ -405,6 +405,7 @@ impl Shapes<'_> {
     }
 
     /// The rows of a sequence with their reach, without the parts beside it.
+    #[inline(never)]
     pub(crate) fn bands(&self, b: usize) -> Vec<Band> {
         let band = |put: &Put| {
             let y = put.y;
@@ -432,6 +433,7 @@ impl Shapes<'_> {
     }
 
     /// The returns that leave a sequence or its branches, and the steps that a return can reach.
+    #[inline(never)]
     pub(crate) fn open_ends(&self, b: usize) -> (Vec<Exit>, Vec<Entry>) {
         let (mut exits, mut entries) = (Vec::new(), Vec::new());
         let mut meeting = LINE;

@@ -60,6 +60,7 @@ struct Row {
 }
 
 /// Draws the actions of a step; `edge` is the right edge of its square.
+#[inline(never)]
 pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options) -> Vec<(u32, Picture)> {
     let rows: Vec<Row> = list.iter().map(|a| row(step, a, options.look)).collect();
     // The boxes of qualifiers have one width, so that they form a column.
@@ -105,6 +106,7 @@ pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options
 }
 
 /// The lines that are shown; if some are left out, also the full text.
+#[inline(never)]
 pub(crate) fn limited(lines: &[Line]) -> (Vec<Line>, Option<String>) {
     let full = || {
         let indent = |l: &Line| " ".repeat(usize::try_from(l.indent / 70).unwrap_or(0));
@@ -120,6 +122,7 @@ pub(crate) fn limited(lines: &[Line]) -> (Vec<Line>, Option<String>) {
     (shown, Some(full()))
 }
 
+#[inline(never)]
 fn row(step: &Step, action: &Action, look: Look) -> Row {
     let plain = |sign, lines: &[Line]| {
         let (lines, title) = limited(lines);
@@ -158,6 +161,7 @@ fn row(step: &Step, action: &Action, look: Look) -> Row {
 }
 
 /// A qualified action in the notation of GRAFCET; where GRAFCET has none, the qualifier stays.
+#[inline(never)]
 fn grafcet(step: &Step, q: Qualifier, time: Option<&Expr>, target: &Target, c: Option<&Expr>) -> Row {
     let work = matches!(target, Target::Work(_));
     let lines = target_lines(target);
@@ -239,6 +243,7 @@ fn target_lines(target: &Target) -> Vec<Line> {
     }
 }
 
+#[inline(never)]
 fn ordered(order: &Order) -> Row {
     let (frame, text) = match order {
         Order::Force(chart, situation) => {
@@ -299,6 +304,7 @@ impl Row {
         }
     }
 
+    #[inline(never)]
     fn draw(&self, p: &mut Picture, at: Rect, cell: i32, alone: bool) {
         let Rect { x, y, w, h } = at;
         let size = if self.frame == Frame::None { SMALL } else { ACTION_TEXT };
@@ -336,6 +342,7 @@ impl Row {
         }
     }
 
+    #[inline(never)]
     fn sign(&self, p: &mut Picture, r: Rect, cell: i32) {
         let middle = r.y + r.h / 2;
         let at = r.x + 95;
@@ -378,6 +385,7 @@ fn cut_box(p: &mut Picture, x: i32, y: i32, w: i32, h: i32) {
 }
 
 /// Draws the stub over a rectangle, with a flag for an event.
+#[inline(never)]
 fn draw_stub(p: &mut Picture, stub: &Stub, x: i32, y: i32) {
     let (lines, event) = match stub {
         Stub::Condition(lines) => (lines, false),

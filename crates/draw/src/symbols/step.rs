@@ -55,6 +55,7 @@ pub(crate) fn step(step: &Step, options: &Options) -> StepShape {
     StepShape { picture, square, actions, extent }
 }
 
+#[inline(never)]
 fn outline(p: &mut Picture, step: &Step, s: Rect, inset: i32) {
     p.rect("g7-box", s.x, s.y, s.w, s.h);
     if inset > 0 {
@@ -78,6 +79,7 @@ fn outline(p: &mut Picture, step: &Step, s: Rect, inset: i32) {
 }
 
 /// Draws the name in the middle of the square.
+#[inline(never)]
 fn name(p: &mut Picture, lines: &[String], size: i32) {
     let cap = size * 698 / 1000;
     let leading = size * 118 / 100;
@@ -90,6 +92,7 @@ fn name(p: &mut Picture, lines: &[String], size: i32) {
 
 /// Draws the signs at the left of the square: the activation link, and the marks of an entry or
 /// exit step whose name does not begin with the standard's letter.
+#[inline(never)]
 fn beside(p: &mut Picture, step: &Step, s: Rect) {
     let mark = match step.kind {
         StepKind::Entry if !step.name.text.starts_with('E') => "E",
@@ -105,6 +108,7 @@ fn beside(p: &mut Picture, step: &Step, s: Rect) {
 
 /// Draws the comment and the expansion of a macro-step: at the right of a square without actions,
 /// otherwise below the actions.
+#[inline(never)]
 fn remarks(p: &mut Picture, step: &Step, s: Rect, actions: Option<i32>) {
     let mut lines = Vec::new();
     if let StepKind::Macro(of) = &step.kind

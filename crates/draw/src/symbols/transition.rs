@@ -42,6 +42,7 @@ pub(crate) fn widest(alternatives: usize) -> i32 {
 }
 
 /// Draws a transition; lines are no wider than `widest` where they can be broken.
+#[inline(never)]
 pub(crate) fn transition(t: &Transition, widest: i32) -> TransitionShape {
     let mut p = Picture::default();
     let bar = Rect { x: -HALF_BAR, y: -HALF, w: 2 * HALF_BAR, h: 2 * HALF };
@@ -71,6 +72,7 @@ pub(crate) fn transition(t: &Transition, widest: i32) -> TransitionShape {
 }
 
 /// Draws the receptivity, its lines centred at the height of the bar.
+#[inline(never)]
 fn condition(p: &mut Picture, t: &Transition, widest: i32) -> Rect {
     let full = receptivity(&t.receptivity);
     let linear = full.linear();
@@ -94,6 +96,7 @@ fn condition(p: &mut Picture, t: &Transition, widest: i32) -> Rect {
 }
 
 /// Draws the stored action on clearing, which hangs from the right end of the bar.
+#[inline(never)]
 fn clearing(p: &mut Picture, lines: &[Line], below: i32) -> i32 {
     let (lines, title) = action::limited(lines);
     let (up, height) = stack(&lines, ACTION_TEXT);
@@ -123,6 +126,7 @@ fn priority(p: &mut Picture, n: u32) {
 }
 
 /// Draws the two lines of a synchronisation, and the link between them and the bar.
+#[inline(never)]
 pub(crate) fn double(p: &mut Picture, bar: &Bar, at: Point) {
     // Links end at the double line, so that none shows between its two lines.
     let (x, y, right, low) = (bar.at.x, bar.at.y, bar.at.x + bar.w, bar.at.y + DOUBLE_GAP);

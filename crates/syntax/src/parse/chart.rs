@@ -163,6 +163,7 @@ impl Parser<'_> {
     }
 
     /// Reads a word of the language in capitals as that word. Several in a row are told once.
+    #[inline(never)]
     fn fold(&mut self, list: &[&'static str]) {
         let word = self.word();
         let Some(meant) = list.iter().copied().find(|w| *w != word && w.eq_ignore_ascii_case(word)) else {
@@ -211,6 +212,7 @@ impl Parser<'_> {
     }
 
     /// Reports text that begins no item of a chart.
+    #[inline(never)]
     fn lost_chart_item(&mut self, start: u32) {
         if matches!(self.cur.kind, Tok::RParen | Tok::RBracket) {
             self.closes_nothing();
@@ -231,6 +233,7 @@ impl Parser<'_> {
     // Steps
 
     /// A step or macro-step; one of its words is in hand.
+    #[inline(never)]
     fn step(&mut self) -> Step {
         let start = self.cur.start;
         let mut initial = false;
@@ -308,6 +311,7 @@ impl Parser<'_> {
         words::has(words::CHART, self.word())
     }
 
+    #[inline(never)]
     fn macro_step(&mut self, start: u32, initial: bool, kind: &StepKind) -> Step {
         if *kind != StepKind::Plain {
             let at = self.since(start);
@@ -341,6 +345,7 @@ impl Parser<'_> {
     // Transitions
 
     /// A transition and those chained to it.
+    #[inline(never)]
     fn transitions(&mut self, items: &mut Vec<ChartItem>) {
         let start = self.cur.start;
         let label = if self.peek().kind == Tok::Colon { self.name_if() } else { None };
@@ -382,6 +387,7 @@ impl Parser<'_> {
     }
 
     /// Reads the part after the arrow.
+    #[inline(never)]
     fn transition(&mut self, start: u32, label: Option<Name>, from: Vec<Name>, chained: bool) -> Transition {
         let to = if self.at_word("when") {
             let at = self.behind();
@@ -413,6 +419,7 @@ impl Parser<'_> {
     }
 
     /// Reads one of the clauses after the receptivity.
+    #[inline(never)]
     fn transition_clause(&mut self, t: &mut Transition) -> bool {
         if t.comment.is_none() && self.at(Tok::Comment) {
             t.comment = self.comment_if();
@@ -430,6 +437,7 @@ impl Parser<'_> {
     }
 
     /// Reads `when e`, and words that are written for it by mistake.
+    #[inline(never)]
     fn receptivity(&mut self, from: &[Name], to: &[Name]) -> Expr {
         self.fold(&["when"]);
         if self.eat_word("when") {
