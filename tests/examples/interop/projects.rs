@@ -23,21 +23,29 @@ const TOGETHER: usize = 40;
 /// Scans of a run.
 const SCANS: usize = 300;
 
-pub(crate) fn rows(table: &mut Table<'_>) {
-    let readers = readers();
-    for reader in &readers {
+/// Charts, by the readers that are installed.
+pub(crate) fn charts(table: &mut Table<'_>) {
+    for reader in &readers() {
         let dialect = if reader.name == "OpenPLC" { Dialect::OpenPlc } else { Dialect::Beremiz };
         let projects: Vec<(&Chart, String)> = written(table, |chart| project(chart, dialect));
         opened(table, reader, reader.name, &projects, |table, _, chart, text, _| {
             as_the_engine(table, chart, text)
         });
     }
-    if let Some(reader) = readers.iter().find(|r| r.name == "Beremiz") {
+}
+
+/// Ladder, by Beremiz.
+pub(crate) fn ladders(table: &mut Table<'_>) {
+    if let Some(reader) = readers().iter().find(|r| r.name == "Beremiz") {
         let printed = written(table, |chart| Some(ladder(chart.compiled.as_ref()?).map(|p| p.text)));
         opened(table, reader, "Beremiz on Ladder", &printed, |table, matiec, chart, _, made| {
             ladder_as_the_engine(table, matiec, chart, made)
         });
     }
+}
+
+/// Both, by the schema.
+pub(crate) fn valid(table: &mut Table<'_>) {
     if let Some(schema) = schema() {
         let mut projects = written(table, |chart| project(chart, Dialect::Standard));
         projects.extend(written(table, |chart| Some(ladder(chart.compiled.as_ref()?).map(|p| p.text))));

@@ -75,6 +75,7 @@ impl<'c> Table<'c> {
 
     /// Counts a reason.
     pub(crate) fn note(&mut self, reason: &str, file: &Path) {
+        eprintln!("{}: {reason}", file.display());
         self.why.entry(nameless(reason)).or_insert_with(|| (0, file.to_path_buf())).0 += 1;
     }
 

@@ -32,6 +32,8 @@ class Absent:
     def create_module(self, _spec):
         module = unittest.mock.MagicMock()
         module.__path__ = []
+        # It translates the reasons of the generator.
+        module.GetTranslation = lambda text: text
         return module
 
     def exec_module(self, _module):

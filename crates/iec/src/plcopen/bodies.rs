@@ -1,7 +1,7 @@
 //! Statements and expressions of a unit, rewritten with the names of the document. Calls of the
 //! file's own function blocks are replaced by the bodies of the blocks.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use g7_model::codes;
 use g7_model::{Arg, CaseArm, Expr, ExprKind, Name, Path, Said, Span, Stmt, StmtKind, Type, say};
@@ -41,6 +41,8 @@ pub(super) struct Coder<'r, 'p, 'a> {
     pub(super) plan: &'p Plan<'a>,
     pub(super) report: &'r mut Report,
     pub(super) calls: BTreeMap<Callee, Calls>,
+    /// The units without a chart whose bodies stand where they are called.
+    pub(super) placed: BTreeSet<usize>,
     left: usize,
     full: bool,
 }
@@ -84,7 +86,14 @@ impl Place {
 
 impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
     pub(super) fn new(plan: &'p Plan<'a>, report: &'r mut Report) -> Coder<'r, 'p, 'a> {
-        Coder { plan, report, calls: BTreeMap::new(), left: MOST_STATEMENTS, full: false }
+        Coder {
+            plan,
+            report,
+            calls: BTreeMap::new(),
+            placed: BTreeSet::new(),
+            left: MOST_STATEMENTS,
+            full: false,
+        }
     }
 
     /// The statements of a body in any language except SFC.
@@ -377,6 +386,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             done.push(Stmt { kind: StmtKind::Call(mark, Vec::new()), at: at.into() });
         } else if let Some((language, node)) = tree::body(pou.node) {
             let of_block = Place { depth: place.depth + 1, ..of_block };
+            self.placed.insert(unit);
             done.append(&mut self.body(language, node, &of_block));
         }
         done.append(&mut behind);

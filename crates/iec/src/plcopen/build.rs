@@ -13,7 +13,7 @@ use super::chart::without_blocks;
 use super::declare;
 use super::draft::{Made, Maker, Order, block};
 use super::inputs;
-use super::read::{Project, SectionKind};
+use super::read::{Pou, Project, SectionKind};
 use super::tree::{self, Language, head, text};
 use super::types::{self, Known};
 use super::units::{self, Meaning, Unit, name_of};
@@ -111,11 +111,25 @@ impl<'a> Builder<'_, '_, 'a> {
             unit_chart(&mut maker, index, vars, guards.get(&(index, None)));
             whole.charts = maker.made;
         }
+        self.never_called();
         let put = |chart: &str, flag: &str, at: Span| mark(&flags, chart, flag, at);
         place_calls(&mut whole.charts.charts, &put);
         resolve_calls(&mut behind, &put);
         self.bodies(&mut body, behind, &mut whole, &flags);
         whole
+    }
+
+    /// Tells of the instances of blocks without a chart that no code calls.
+    fn never_called(&mut self) {
+        let plan = self.coder.plan;
+        for (index, unit) in plan.units.iter().enumerate() {
+            let written = |pou: &Pou| tree::body(pou.node).is_some_and(|(l, _)| l != Language::Sfc);
+            let waits = !unit.program && !self.coder.placed.contains(&index);
+            if waits && plan.pou(index).is_some_and(written) {
+                let what = say!("no code calls the function block `{}`; its body is left out", unit.chart);
+                self.coder.say(&codes::LEFT_OUT, unit.node, what);
+            }
+        }
     }
 
     /// The bodies of programs without a chart, in order: first those that the tasks run before a

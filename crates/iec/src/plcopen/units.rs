@@ -124,13 +124,18 @@ impl<'a> Planner<'_, 'a> {
         for section in &project.globals {
             self.plan.lists.extend(section.name.as_ref().map(|n| n.to_uppercase()));
         }
-        for variable in project.globals.iter().flat_map(|s| &s.variables) {
+        let variables = || project.globals.iter().flat_map(|s| &s.variables);
+        // An instance of a block gives its name to a chart.
+        let plain = variables().filter(|v| !self.is_own_block(**v)).filter_map(|v| name_of(*v));
+        for name in plain.collect::<Vec<_>>() {
+            self.charts.take(&name.to_uppercase());
+        }
+        for variable in variables() {
             let Some(name) = name_of(*variable) else { continue };
             let upper = name.to_uppercase();
             if self.plan.globals.contains_key(&upper) {
                 continue; // Reported at the declaration.
             }
-            self.charts.take(&upper);
             let meaning = self.meaning(*variable, None, name, &[]);
             self.plan.globals.insert(upper, meaning);
         }

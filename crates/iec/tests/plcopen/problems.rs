@@ -82,3 +82,44 @@ prove always v
     assert_eq!(found, expected, "{:?}", written.problems.iter().map(|p| &p.what).collect::<Vec<_>>());
     assert!(!errors(&written.problems).is_empty());
 }
+
+#[test]
+fn a_block_that_no_code_calls_is_told() {
+    let block = |name: &str, body: &str| {
+        format!(
+            "<pou name=\"{name}\" pouType=\"functionBlock\"><interface><localVars><variable name=\"n\"><type><INT/></type>\
+             </variable></localVars></interface><body><ST><xhtml xmlns=\"http://www.w3.org/1999/xhtml\">{body}</xhtml></ST></body></pou>\n"
+        )
+    };
+    let instance = |name: &str, ty: &str| {
+        format!("<variable name=\"{name}\"><type><derived name=\"{ty}\"/></type></variable>\n")
+    };
+    // `Ran` calls `Inner`, and is called by the program; `Idle` calls `Lost`, and is called by nobody.
+    let file = format!(
+        "<project xmlns=\"http://www.plcopen.org/xml/tc6_0200\"><types><dataTypes/><pous>\n\
+         {}{}<pou name=\"P\" pouType=\"program\"><interface><externalVars>{}</externalVars></interface>\
+         <body><ST><xhtml xmlns=\"http://www.w3.org/1999/xhtml\">Ran();</xhtml></ST></body></pou></pous></types>\n\
+         <instances><configurations><configuration name=\"C\"><globalVars>\n{}{}{}{}</globalVars></configuration>\
+         </configurations></instances></project>",
+        block("Plain", "n := n + 1;"),
+        block("Caller", "Inner(); n := n + 2;"),
+        instance("Ran", "Caller"),
+        instance("Ran", "Caller"),
+        instance("Inner", "Plain"),
+        instance("Idle", "Caller"),
+        instance("Lost", "Plain"),
+    );
+    let (read, problems) = support::import("plcopen", file.as_bytes(), g7_model::FileId(0));
+    let whats: Vec<_> = problems.iter().map(|p| (p.code.id, &*p.what)).collect();
+    let words = |name: &str| format!("no code calls the function block `{name}`; its body is left out");
+    assert_eq!(whats, [("G0605", &*words("Idle")), ("G0605", &*words("Lost"))]);
+    let text = crate::show::text(&read);
+    assert!(text.contains("Inner.n := Inner.n + 1") && text.contains("Ran.n := Ran.n + 2"), "{text}");
+}
+
+#[test]
+fn a_chart_without_steps_has_no_body_for_a_program() {
+    let chart = document("profile iec61131\nchart Home { var n : INT }");
+    let written = support::export("plcopen", &chart);
+    assert_eq!(errors(&written.problems), ["the chart `Home` has no step, and a program has a body"]);
+}
