@@ -108,15 +108,20 @@ pub fn of_engine(compiled: &Compiled, scans: &[Scan]) -> Vec<Sight> {
 
 /// The value of a name. A name with its chart or program is also found without it, if it has no other owner.
 pub fn found(sight: &BTreeMap<String, u64>, name: &str) -> Option<u64> {
+    place(sight, name).map(|(_, word)| *word)
+}
+
+/// The same, with the name as it stands there.
+fn place<'s>(sight: &'s BTreeMap<String, u64>, name: &str) -> Option<(&'s String, &'s u64)> {
     let name = key(name);
-    if let Some(word) = sight.get(&name) {
-        return Some(*word);
+    if let Some(exact) = sight.get_key_value(&name) {
+        return Some(exact);
     }
     let tail = |full: &str| full.split_once('.').map(|(_, t)| t.to_owned());
     let one = |wanted: &str| {
         let mut hits =
             sight.iter().filter(|(n, _)| n.as_str() == wanted || tail(n).as_deref() == Some(wanted));
-        hits.next().filter(|_| hits.next().is_none()).map(|(_, w)| *w)
+        hits.next().filter(|_| hits.next().is_none())
     };
     one(&name).or_else(|| one(&tail(&name)?))
 }
@@ -124,7 +129,11 @@ pub fn found(sight: &BTreeMap<String, u64>, name: &str) -> Option<u64> {
 /// The first difference between two runs in the names that both have, and how many names these are.
 pub fn difference(want: &[Sight], got: &[Sight]) -> (usize, Option<String>) {
     let names: Vec<&String> = match (want.first(), got.first()) {
-        (Some(w), Some(g)) => w.keys().filter(|n| found(g, n).is_some()).collect(),
+        (Some(w), Some(g)) => {
+            // The output `Q` of a block `T` is not the variable `Q`.
+            let other = |n: &String, there: &String| there != n && w.contains_key(there);
+            w.keys().filter(|n| place(g, n).is_some_and(|(there, _)| !other(n, there))).collect()
+        }
         _ => Vec::new(),
     };
     for (number, (want, got)) in want.iter().zip(got).enumerate() {

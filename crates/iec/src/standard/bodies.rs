@@ -80,6 +80,9 @@ impl<'d> Lower<'d> {
                 if let (true, ExprKind::Path(path)) = (output, &value.kind) {
                     self.note(path, true, at);
                 }
+                if output {
+                    self.sets_step(&value, at);
+                }
                 Arg { name, output, value: self.expr(&value, at) }
             })
             .collect()
@@ -150,6 +153,29 @@ impl<'d> Lower<'d> {
     pub(super) fn nothing(&mut self, span: Span, what: Said) -> Expr {
         self.lost(span, what);
         nodes::boolean(false, span)
+    }
+
+    /// Tells of the activity of a step as the target of an assignment.
+    fn sets_step(&mut self, target: &Expr, at: &At<'d>) {
+        let step = match &target.kind {
+            ExprKind::Path(path) => {
+                let local = |n: &g7_model::Name| at.locals.iter().any(|(l, _)| **l == *n.text);
+                let own = matches!(path.names.as_slice(), [one] if local(one));
+                !own && matches!(self.scopes.refer(at.chart, &path.names), Some(Ref::Active(_)))
+            }
+            ExprKind::Direct(address) => {
+                self.scopes.at(address).is_none() && self.scopes.direct_step(address).is_some()
+            }
+            _ => false,
+        };
+        if step {
+            self.lost(
+                target.at.0,
+                say!(
+                    "an assignment to the bit of a step changes the situation of a chart from outside, which IEC 61131-3 does not have; `g7 gen st` holds it"
+                ),
+            );
+        }
     }
 
     fn direct(&mut self, address: &str, span: Span, at: &At<'d>) -> Expr {
@@ -315,6 +341,7 @@ impl<'d> Lower<'d> {
                 if let ExprKind::Path(path) = &target.kind {
                     self.note(path, true, at);
                 }
+                self.sets_step(target, at);
                 StmtKind::Assign { target: self.expr(target, at), value: self.expr(value, at) }
             }
             StmtKind::Call(path, args) => return self.invoked(path, args, stmt.at.0, at),

@@ -284,6 +284,7 @@ chart G {
   B -> A when a
 }
 chart H { initial enclosing step C }
+chart K { pre { if a then X7 := TRUE end_if }  initial step 7 }
 task T { entry step E  exit step F  E -> F when a }
 function Full(n : INT) : BOOL { Full := a }
 ";
@@ -292,6 +293,7 @@ function Full(n : INT) : BOOL { Full := a }
         ("SD 1s q if a", "the condition of an action"),
         ("force H", "a forcing order"),
         ("{ q := a }", "an action on clearing"),
+        ("X7 :=", "an assignment to the bit of a step"),
         ("C }", "an enclosing step"),
         ("T { entry", "a task"),
         ("a }\n", "a function sees no variables"),
