@@ -122,7 +122,8 @@ fn items(app: &App<'_>, panel: Panel) -> (usize, usize, usize) {
     let (mut need, mut want) = (0, 0);
     for (number, at) in app.listed(panel).into_iter().enumerate() {
         let Some(item) = app.bench.items.get(at) else { continue };
-        let Some(line) = item_line(app, at, (panel == Panel::Inputs).then_some(number)) else { continue };
+        let number = (panel == Panel::Inputs).then_some(number);
+        let Some(line) = item_line(app, at, number, usize::MAX) else { continue };
         let comment = item.comment.as_ref().map_or(0, |c| c.chars().count() + 1);
         let value = if item.kind == g7_host::Kind::Bool { 2 } else { 3 + VALUE };
         let key = if panel == Panel::Inputs { 4 } else { 0 };

@@ -117,7 +117,8 @@ fn draw_panel(frame: &mut Frame<'_>, app: &App<'_>, panel: Panel, area: Rect) {
         .skip(first)
         .take(room)
         .filter_map(|(number, at)| {
-            let line = item_line(app, *at, (panel == Panel::Inputs).then_some(number))?;
+            let number_of_input = (panel == Panel::Inputs).then_some(number);
+            let line = item_line(app, *at, number_of_input, usize::from(area.width.saturating_sub(2)))?;
             Some(if focus && number == selected { line.patch_style(Modifier::REVERSED) } else { line })
         })
         .collect();

@@ -23,8 +23,14 @@ pub(super) fn step_line<'a>(app: &App<'_>, step: &'a StepItem) -> Line<'a> {
     Line::from(spans).style(if on { ON } else { DIM })
 }
 
-/// A line for an item; the comment comes last, because a narrow panel cuts the end off.
-pub(super) fn item_line<'a>(app: &App<'a>, at: usize, number: Option<usize>) -> Option<Line<'a>> {
+/// A line for an item, in a list of this width. A narrow list cuts the comment off, then the end of a long
+/// name, but never the value.
+pub(super) fn item_line<'a>(
+    app: &App<'a>,
+    at: usize,
+    number: Option<usize>,
+    room: usize,
+) -> Option<Line<'a>> {
     let item = app.bench.items.get(at)?;
     if let (Some(table), Some((_, state))) = (app.table(at), app.runner.plant()) {
         return Some(Line::raw(table.show(state)));
@@ -44,7 +50,9 @@ pub(super) fn item_line<'a>(app: &App<'a>, at: usize, number: Option<usize>) -> 
         spans.push(Span::styled(if on { "● " } else { "○ " }, if on { ON } else { DIM }));
         spans.push(Span::styled(item.name.as_str(), if on { ON } else { Style::new() }));
     } else {
-        spans.push(Span::raw(format!("{} = {}", item.name, short(&value.show(item.kind)))));
+        let value = format!(" = {}", short(&value.show(item.kind)));
+        let taken: usize = spans.iter().map(Span::width).sum::<usize>() + value.chars().count();
+        spans.push(Span::raw(cut(&item.name, room.saturating_sub(taken)) + &value));
     }
     if app.bench.is_forced(&app.runner, item) {
         spans.push(Span::styled(" held", HELD));
@@ -55,6 +63,14 @@ pub(super) fn item_line<'a>(app: &App<'a>, at: usize, number: Option<usize>) -> 
         spans.push(Span::styled(format!(" {comment}"), DIM));
     }
     Some(Line::from(spans))
+}
+
+/// A name in this many characters; at least the first of it is left.
+fn cut(name: &str, room: usize) -> String {
+    if name.chars().count() <= room {
+        return name.to_owned();
+    }
+    name.chars().take(room.saturating_sub(1).max(1)).chain(['…']).collect()
 }
 
 /// A value as text, with fewer decimals and visible control characters.

@@ -384,3 +384,16 @@ fn eighty_columns_show_keys_and_plant() {
         "{wide}"
     );
 }
+
+#[test]
+fn a_narrow_list_cuts_names_and_shows_values() {
+    let long = "var time_until_the_next_release : INT := 1234\nvar level_of_the_second_tank : INT := -77\n\
+                input a_long_name_of_an_input, another_long_name_of_one : INT\noutput valve_of_the_tank : BOOL\n";
+    let bench = bench(&format!("{long}{}", CHART.replace("var n", "var m2, n")));
+    let mut app = app(&bench, &[]);
+    press(&mut app, ".");
+    let shown = picture(&mut app, 80, 24);
+    for value in ["… = 1234", "… = -77"] {
+        assert!(shown.contains(value), "{shown}");
+    }
+}
