@@ -21,8 +21,22 @@ use g7_tests::generated::project;
 /// - a step, or the time of a step, that another chart reads; step times in scans;
 /// - conditions that read what actions drive;
 /// - constants of several programs, and a block of the file that is called with an output;
-/// - a step that nothing reaches, and a step that is called like its program.
-const CHARTS: [(&str, &str); 12] = [
+/// - a step that nothing reaches, and a step that is called like its program;
+/// - steps that are called like members of blocks.
+const CHARTS: [(&str, &str); 13] = [
+    (
+        "letters",
+        "input a, b : BOOL
+         output l : BOOL
+         chart G {
+           initial step X { D 300ms l }
+           step Q { L 200ms l }
+           step T { N l if T.T > 200ms }
+           X -> Q when a
+           Q -> T when b and Q.T > 100ms
+           T -> X when not a
+         }",
+    ),
     (
         "never",
         "input a, b : BOOL

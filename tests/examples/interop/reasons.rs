@@ -8,8 +8,8 @@ pub(crate) fn nameless(reason: &str) -> String {
     placeless.join(" ").replace('|', "/").chars().take(120).collect()
 }
 
-/// Words of a reason, and who is right. The first row that fits counts.
-const RIGHT: [(&[&str], &str); 14] = [
+/// Words of a reason or of the file, and who is right. The first row that fits counts.
+const RIGHT: [(&[&str], &str); 22] = [
     (&["refused by G7", "which IEC 61131-3 does not have"], "G7: the language has no such construct"),
     (&["refused by G7", "the meta-model"], "G7: the meta-model has no such thing"),
     (&["refused by G7", "stability"], "G7: Ladder has no loop"),
@@ -24,12 +24,25 @@ const RIGHT: [(&[&str], &str); 14] = [
     (&["IronPLC on SFC text", "P4007"], "G7: IronPLC knows no S.X and S.T of a step"),
     (&["IronPLC on SFC text"], "G7: IronPLC reads a part of SFC text and runs none of it"),
     (&["matiec", "unknown error"], "not judged: matiec names no reason"),
+    (
+        &["run:", "it ends with a signal"],
+        "G7: the chart divides by zero or does not end, which is a fault here; C of matiec is ended by the system",
+    ),
+    (&["run:", "no name to compare"], "not compared: the chart has nothing but texts and real numbers"),
+    (&["run:", "st-f"], "G7: matiec leaves out a FOR loop of one iteration (`WHILE i < last`)"),
+    (
+        &["run:", "string-length"],
+        "G7: a character of UTF-8 is one character here, and several in C of matiec",
+    ),
+    (&["run:", "example_sequential"], "nobody: TIME_TO_DINT counts in seconds there, of which G7 warns"),
     (&["run:"], "a difference that is not explained"),
     (&["missing"], "nobody: it is not installed"),
     (&[], "a form of G7 that the tool does not take, or a fault of the tool"),
 ];
 
 /// Who is right where something was not taken.
-pub(crate) fn who(reason: &str) -> &'static str {
-    RIGHT.iter().find(|(words, _)| words.iter().all(|w| reason.contains(w))).map_or("", |(_, who)| who)
+pub(crate) fn who(reason: &str, file: &std::path::Path) -> &'static str {
+    let file = file.to_string_lossy();
+    let fits = |words: &&[&str]| words.iter().all(|w| reason.contains(w) || file.contains(w));
+    RIGHT.iter().find(|(words, _)| fits(words)).map_or("", |(_, who)| who)
 }

@@ -127,7 +127,7 @@ impl<'c> Table<'c> {
     pub(crate) fn end(self) {
         println!("\n| reason | charts | first | who is right |\n|---|---|---|---|");
         for (reason, (count, first)) in &self.why {
-            println!("| {reason} | {count} | {} | {} |", first.display(), who(reason));
+            println!("| {reason} | {count} | {} | {} |", first.display(), who(reason, first));
         }
         println!("\n{} seconds", self.begun.0.elapsed().as_secs());
     }

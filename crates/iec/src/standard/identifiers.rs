@@ -8,6 +8,10 @@ use g7_model::{Name, Span};
 use super::scopes::{Scopes, StepKey};
 use crate::nodes::Taken;
 
+/// Members of steps, and of the blocks that actions are written with. In the code that matiec makes, each step
+/// is a macro of C, which would stand for a member of its name as well.
+const MEMBERS: [&str; 8] = ["X", "T", "IN", "PT", "Q", "ET", "CLK", "M"];
+
 /// The names given so far.
 pub(super) struct Names {
     reserved: HashSet<&'static str>,
@@ -139,18 +143,24 @@ impl Names {
 
     /// Names of steps. A step of which `Fill.X` or `Fill.T` is read shares one name space with
     /// variables, because `Fill` would be the variable there. Any other step may have the name of a
-    /// variable, if `apart` says that it is not read.
+    /// variable, if `apart` says that it is not read. `macros` says that steps are macros of C there.
     pub(super) fn give_steps(
         &mut self,
         owner: Owner,
         chart: usize,
         prefix: &str,
         scopes: &Scopes,
+        macros: bool,
         apart: impl Fn(StepKey) -> bool,
     ) {
         for (key, step) in scopes.steps_of(chart) {
             let digit = step.name.text.starts_with(|c: char| c.is_ascii_digit());
-            let start = if digit { "Step" } else { "" };
+            let member = macros && MEMBERS.contains(&step.name.text.to_ascii_uppercase().as_str());
+            let start = match (digit, member) {
+                (true, _) => "Step",
+                (false, true) => "Step_",
+                (false, false) => "",
+            };
             let plain = identifier(&format!("{start}{}", step.name.text));
             let upper = plain.to_ascii_uppercase();
             let of_var = self.of_vars.contains(&(owner, upper.clone()))

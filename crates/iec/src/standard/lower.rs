@@ -299,7 +299,8 @@ impl<'d> Lower<'d> {
             }
             let text = self.form == (Form::Networks { drawn: false });
             let apart = |key| text && !self.read_twins.contains(&key);
-            self.names.give_steps(owner, chart, prefix, &self.scopes, apart);
+            let macros = !matches!(self.form, Form::Codesys { .. });
+            self.names.give_steps(owner, chart, prefix, &self.scopes, macros, apart);
         }
         if let Form::Codesys { .. } = self.form {
             let heads = self.heads.iter().filter_map(|head| self.scopes.chart(*head));

@@ -239,6 +239,18 @@ fn tenths_of_a_step_against_a_number_are_its_time() {
 }
 
 #[test]
+fn a_step_is_not_called_like_a_member_of_a_block() {
+    becomes(
+        "input a : BOOL  output l : BOOL  chart G { initial step T { N l }  step q  step R  T -> q when a  q -> R when q.X  R -> T when T.t > 1s }",
+        "input a : BOOL  output l : BOOL
+         chart G {
+           initial step Step_T { N l }  step Step_q  step R
+           Step_T -> Step_q when a  Step_q -> R when Step_q.X  R -> Step_T when Step_T.t > 1s
+         }",
+    );
+}
+
+#[test]
 fn guarded_parts_without_statements_are_left_out() {
     becomes(
         "input a, b : BOOL  var n : INT
