@@ -45,7 +45,7 @@ impl<'d> Lower<'d> {
             }
             ExprKind::Unary(op, inner) => ExprKind::Unary(*op, Box::new(self.expr(inner, at))),
             ExprKind::Binary(op, a, b) => {
-                if let Some(e) = self.tenths(*op, a, b, span, at) {
+                if let Some(e) = self.counted_time(*op, a, b, span, at) {
                     return e;
                 }
                 ExprKind::Binary(*op, Box::new(self.expr(a, at)), Box::new(self.expr(b, at)))

@@ -7,21 +7,21 @@ use std::collections::HashSet;
 
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    ActionKind, BinaryOp, ChartItem, Expr, ExprKind, FbKind, Item, Literal, Nanos, Path, Span, Stmt, Target,
-    Type, Work, say,
+    ActionKind, Arg, BinaryOp, ChartItem, Expr, ExprKind, FbKind, Item, Literal, Nanos, Path, Span, Stmt,
+    Target, Type, Work, say,
 };
 
 use super::bodies::{At, MOST_CONSTANTS};
-use super::lower::Lower;
+use super::lower::{Form, Lower};
 use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
 
 /// The most that a step time counts, which is an INT, and the most scans that are counted for its seconds.
 const MOST: [i128; 2] = [32_767, 2_147_483_647];
 
-/// The unit of `%X1.T`, and the number at which it stays.
-const TENTH: Nanos = Nanos::from_millis(100);
-const MOST_TENTHS: i64 = 9998;
+/// Units of times that are numbers, and the greatest number that stands for one time: `%X1.T` stays at 9999.
+const TENTHS: (Nanos, i64) = (Nanos::from_millis(100), 9998);
+const MILLISECONDS: (Nanos, i64) = (Nanos::from_millis(1), i32::MAX as i64 - 1);
 
 /// No step is active for longer, as far as blocks that count its time can tell: some 27 years.
 pub(crate) const LONGEST: Nanos = Nanos::from_millis(10_000 * 86_400_000);
@@ -90,9 +90,10 @@ impl<'d> Lower<'d> {
         value
     }
 
-    /// `%X1.T` against a number: the time of the step against so many tenths of a second. Alone it has no exact form,
-    /// because conversions of times to numbers count in units of the maker's choice.
-    pub(super) fn tenths(
+    /// `%X1.T`, or `TIME_TO_DINT(Fill.T)`, against a number: the time of the step against so many tenths or thousandths
+    /// of a second. Alone they have no exact form, because conversions of times to numbers count in units of the
+    /// maker's choice.
+    pub(super) fn counted_time(
         &mut self,
         op: BinaryOp,
         a: &Expr,
@@ -101,19 +102,22 @@ impl<'d> Lower<'d> {
         at: &At<'d>,
     ) -> Option<Expr> {
         let of = |e: &Expr| match &e.kind {
-            ExprKind::Direct(address) => self.scopes.direct_step(address.strip_suffix(".T")?),
+            ExprKind::Direct(address) => {
+                Some((self.scopes.direct_step(address.strip_suffix(".T")?)?, TENTHS))
+            }
+            ExprKind::Call(function, args) => Some((self.milliseconds(function, args, at)?, MILLISECONDS)),
             _ => None,
         };
-        let (step, number, op) = match (of(a), of(b)) {
+        let ((step, (unit, most)), number, op) = match (of(a), of(b)) {
             (Some(step), None) => (step, b, op),
             (None, Some(step)) => (step, a, turned(op)),
             _ => return None,
         };
         let value = self.folded(number, at.chart, MOST_CONSTANTS)?;
         let ExprKind::Literal(Literal::Int(n, _)) = value.kind else { return None };
-        let n = i64::try_from(n).ok().filter(|n| (0..MOST_TENTHS).contains(n) && !at.function)?;
+        let n = i64::try_from(n).ok().filter(|n| (0..=most).contains(n) && !at.function)?;
         let time = self.time_of(step, span, at);
-        let against = |op, n: i64| nodes::binary(op, time.clone(), nodes::time(TENTH * n, span), span);
+        let against = |op, n: i64| nodes::binary(op, time.clone(), nodes::time(unit * n, span), span);
         let (from, below) = (|n| against(BinaryOp::Ge, n), |n| against(BinaryOp::Lt, n));
         Some(match op {
             BinaryOp::Ge => from(n),
@@ -124,6 +128,22 @@ impl<'d> Lower<'d> {
             BinaryOp::Ne => nodes::or(below(n), from(n + 1), span),
             _ => return None,
         })
+    }
+
+    /// The step whose time is converted to a number, which counts milliseconds in this program; CODESYS does the same.
+    fn milliseconds(&self, function: &Path, args: &[Arg], at: &At<'d>) -> Option<StepKey> {
+        let ([name], [arg]) = (function.names.as_slice(), args) else { return None };
+        let wide = ["TIME_TO_DINT", "TIME_TO_LINT", "TIME_TO_UDINT", "TIME_TO_ULINT"];
+        let of_time = wide.iter().any(|w| name.text.eq_ignore_ascii_case(w));
+        if !of_time || arg.output || self.scan_clock || matches!(self.form, Form::Codesys { .. }) {
+            return None;
+        }
+        let ExprKind::Path(path) = &arg.value.kind else { return None };
+        let own = matches!(path.names.as_slice(), [one] if at.locals.iter().any(|(l, _)| **l == *one.text));
+        match self.scopes.refer(at.chart, &path.names) {
+            Some(Ref::Time(step)) if !own => Some(step),
+            _ => None,
+        }
     }
 
     /// A variable as it was before the actions and bodies of the scan.

@@ -336,7 +336,8 @@ impl<'d> Lower<'d> {
             let why = if word { say!(", because it is a word of IEC 61131-3") } else { Said::default() };
             let what = say!("`{from}` is called `{to}` there{why}{tail}");
             let mut problem = Problem::new(&codes::RENAMED, *at, what);
-            for (at, _, to) in self.names.renamed.iter().skip(1).take(100) {
+            // Places beyond these would be pages of output; the names stand in the file that is written.
+            for (at, _, to) in self.names.renamed.iter().skip(1).take(8) {
                 problem.related.push((*at, say!("called `{to}`")));
             }
             problems.push(problem);

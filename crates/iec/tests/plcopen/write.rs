@@ -239,6 +239,20 @@ fn tenths_of_a_step_against_a_number_are_its_time() {
 }
 
 #[test]
+fn thousandths_of_a_step_against_a_number_are_its_time() {
+    becomes(
+        "var n : DINT
+         chart G { initial step A  step B
+           A -> B when TIME_TO_DINT(A.T) >= 100 or 20 >= TIME_TO_LINT(A.T)
+           B -> A when TIME_TO_UDINT(B.t) <> 5 and TIME_TO_DINT(B.t) >= n }",
+        "var n : DINT
+         chart G { initial step A  step B
+           A -> B when A.t >= 100ms or A.t < 21ms
+           B -> A when (B.t < 5ms or B.t >= 6ms) and TIME_TO_DINT(B.t) >= n }",
+    );
+}
+
+#[test]
 fn a_step_is_not_called_like_a_member_of_a_block() {
     becomes(
         "input a : BOOL  output l : BOOL  chart G { initial step T { N l }  step q  step R  T -> q when a  q -> R when q.X  R -> T when T.t > 1s }",
