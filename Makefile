@@ -22,7 +22,7 @@ TALLY := $(abspath $(or $(CARGO_TARGET_DIR),target))/tally
 # they are compiled once for all tests.
 DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
 # With the kinds of devices that the usual build does not have.
-WORKSPACE := --workspace --features g7/s7,g7/gpio,g7/opcua
+WORKSPACE := --workspace --features g7/s7,g7/gpio,g7/opcua,g7-tests/types
 BUILD := cargo build --quiet $(WORKSPACE) --bin g7
 TESTS := cargo test $(WORKSPACE) --quiet --lib --bins --tests
 CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
@@ -35,7 +35,7 @@ PAGE := $(shell find web/src docs/book/fr docs/book/pt web/index.html web/public
 EXTENSION := editors/vscode
 EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
 
-.PHONY: grammars vscode tree-sitter zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
+.PHONY: grammars types vscode tree-sitter zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -110,6 +110,10 @@ $(EXTENDED): $(EXTENSION)/package-lock.json
 ## the grammars of other editors anew, from the table of words
 grammars:
 	cargo run --quiet --package g7-tests --bin grammars
+
+## the messages between the page and its Rust as TypeScript anew, from the table of `g7-page`
+types:
+	cargo run --quiet --package g7-tests --features types --bin types
 
 ## the extension for VS Code as a file that `code --install-extension` takes
 vscode: $(EXTENDED)

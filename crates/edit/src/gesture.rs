@@ -5,6 +5,7 @@ use crate::splice::Splice;
 
 /// One gesture of the editor.
 #[derive(Clone, Debug, PartialEq, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
 #[serde(tag = "g", rename_all = "snake_case", deny_unknown_fields)]
 pub enum Gesture {
     /// Adds a step without links.
@@ -42,6 +43,7 @@ pub enum Gesture {
         link: ItemId,
         /// The part to insert.
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         what: What,
     },
     /// Adds a branch.
@@ -79,6 +81,7 @@ pub enum Gesture {
         ids: Vec<ItemId>,
         /// Join what was before the parts to what was after them.
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         heal: bool,
     },
     /// Renames a step, chart or variable wherever it is used.
@@ -205,6 +208,7 @@ pub enum Gesture {
     AddChart {
         /// The kind of chart.
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         kind: ChartSort,
         /// Its name; a new one is found if absent.
         #[serde(default)]
@@ -256,7 +260,8 @@ pub enum Gesture {
         /// The time in milliseconds.
         ms: f64,
     },
-    /// Changes the text directly, as the user types.
+    /// Changes the text directly, as the user types. The page sends its own changes as `splice`.
+    #[cfg_attr(feature = "types", ts(skip))]
     Text {
         /// The changes, in bytes of the text before.
         splices: Vec<Splice>,
@@ -266,6 +271,7 @@ pub enum Gesture {
 /// A part that is inserted into a link; the step or transition that alternation needs comes with
 /// it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Between"))]
 #[serde(rename_all = "snake_case")]
 pub enum What {
     /// A step.
@@ -281,6 +287,7 @@ pub enum What {
 
 /// Kinds of branching.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Branching {
     /// A selection: one of the branches.
@@ -290,7 +297,8 @@ pub enum Branching {
 }
 
 /// Kinds of step.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "StepKind"))]
 #[serde(rename_all = "snake_case")]
 pub enum Sort {
     /// A plain step.
@@ -306,7 +314,8 @@ pub enum Sort {
 }
 
 /// Kinds of chart.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ChartKind"))]
 #[serde(rename_all = "snake_case")]
 pub enum ChartSort {
     /// An ordinary chart.
@@ -321,6 +330,7 @@ pub enum ChartSort {
 
 /// Kinds of alignment.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "snake_case")]
 pub enum Alignment {
     /// In a column, at the symbol farthest to the left.
@@ -337,32 +347,43 @@ pub enum Alignment {
 
 /// A variable as the table shows it; a field is empty if the variable has no such part.
 #[derive(Clone, Debug, Default, PartialEq, Eq, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "VariableEdit", optional_fields = nullable))]
 #[serde(default)]
 pub struct Row {
     /// Its name.
     #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub name: String,
     /// `input`, `output`, `var` or `const`; `var` if empty.
     #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub class: String,
     /// Its type; BOOL if empty.
-    #[serde(rename = "type", deserialize_with = "text_or_null")]
+    #[serde(rename = "type")]
+    #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub ty: String,
     /// Its initial value.
     #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub init: String,
     /// Its address or channel.
     #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub address: String,
     /// True if the channel carries the complement.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
     pub inverted: bool,
     /// True if the value is kept over a restart.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
     pub retain: bool,
     /// For an output: its value after a fault.
     #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub safe: String,
     /// Its comment, without quotes.
     #[serde(deserialize_with = "text_or_null")]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     pub comment: String,
     /// The chart to which it belongs; the file if absent.
     pub chart: Option<String>,

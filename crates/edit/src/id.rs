@@ -40,6 +40,7 @@ pub enum Part {
 
 /// The id of a part of a chart.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(type = "string"))]
 pub struct ItemId {
     /// The name of the chart.
     pub chart: String,

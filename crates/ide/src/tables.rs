@@ -22,8 +22,8 @@ pub struct Tables {
 pub struct Variable {
     /// Its name.
     pub name: String,
-    /// `input`, `output`, `var` or `const`.
-    pub class: &'static str,
+    /// Its class.
+    pub class: VarKind,
     /// Its type.
     pub ty: String,
     /// Its initial value.
@@ -96,7 +96,7 @@ pub fn tables(readable: &Readable) -> Tables {
         match n.meaning {
             Meaning::Variable(v, chart) => variables.push(Variable {
                 name: n.name.text.to_string(),
-                class: class(v.kind),
+                class: v.kind,
                 ty: v.ty.to_string(),
                 init: v.init.as_ref().map_or(String::new(), |e| readable.words(e.at.0)),
                 address: v.address.as_ref().map_or(String::new(), |a| a.text.to_string()),

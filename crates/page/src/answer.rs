@@ -1,4 +1,4 @@
-//! The form of answers: `{"ok":…}` or `{"no":"a sentence"}`.
+//! The form of answers: `{"ok":…}` or `{"no":"a sentence"}`, and those that are a single text.
 
 use serde::Serialize;
 
@@ -17,4 +17,40 @@ pub(crate) fn ok<T: Serialize>(value: &T) -> Answer {
 /// The text that is sent back.
 pub(crate) fn text(answer: Answer) -> String {
     answer.unwrap_or_else(|no| serde_json::json!({ "no": no }).to_string())
+}
+
+/// A text.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub(crate) struct Text {
+    pub(crate) text: String,
+}
+
+/// The text before the last change; null if there was none.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub(crate) struct Before {
+    pub(crate) text: Option<String>,
+}
+
+/// A style sheet.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub(crate) struct Style {
+    pub(crate) css: String,
+}
+
+/// A page of the book.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub(crate) struct Explained {
+    pub(crate) markdown: String,
+}
+
+/// The breakpoints of a run.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub(crate) struct Breaks {
+    /// The ids of their symbols.
+    pub(crate) ids: Vec<String>,
 }

@@ -2,23 +2,40 @@
 
 use std::collections::HashMap;
 
-use g7_draw::{End, Look, Options, Part, Rect};
-use g7_edit::ItemId;
+use g7_draw::{End, Look, Options, Rect};
+use g7_edit::{ChartSort, ItemId, Sort};
 use g7_ide::ids;
-use g7_ide::tables::kind;
 use g7_ide::{File, Readable};
-use g7_model::{ActionKind, Chart, Order, Step, StepKind, Transition};
+use g7_model::{ActionKind, Chart, ChartKind, Order, Step, StepKind, Transition};
 use serde::{Deserialize, Serialize};
+
+/// The standard whose symbols are drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Standard {
+    Iec60848,
+    Sfc,
+}
+
+/// The pages on which a chart is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Pages {
+    Pl7,
+}
 
 /// The drawing that the page asks for.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "DrawingWish", optional_fields = nullable))]
 pub(crate) struct Wish {
     pub(crate) file: String,
     pub(crate) chart: String,
     #[serde(default)]
-    look: Option<String>,
+    look: Option<Standard>,
     #[serde(default)]
-    pages: Option<String>,
+    pages: Option<Pages>,
     #[serde(default)]
     actions: Option<bool>,
     /// The number of the drawing that the page has, 0 if none; absent if this one is not to be kept.
@@ -34,24 +51,47 @@ impl Wish {
     }
 }
 
+/// A rectangle: its left and upper edge, width, height.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Box"))]
+pub(crate) struct Area([f64; 4]);
+
+/// The kinds of symbols.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Part {
+    Step,
+    Action,
+    Transition,
+    Link,
+    Connector,
+    Comment,
+    /// It is only drawn.
+    #[default]
+    Text,
+}
+
 /// The drawing of a chart. Lengths are in px at 100 %.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Drawn {
     chart: String,
-    kind: &'static str,
+    kind: ChartSort,
     /// True if the drawing shows an earlier text, because the present one has syntax errors.
     stale: bool,
-    area: [f64; 4],
+    area: Area,
     #[serde(skip)]
     pub(crate) items: Vec<Item>,
 }
 
 /// A symbol, without its drawing, which is sent only where it is new.
 #[derive(Debug, Default, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Shape", optional_fields))]
 pub(crate) struct Item {
     id: String,
-    part: &'static str,
-    area: [f64; 4],
+    part: Part,
+    area: Area,
     #[serde(skip)]
     pub(crate) svg: String,
     #[serde(skip)]
@@ -59,11 +99,11 @@ pub(crate) struct Item {
     pub(crate) from: usize,
     pub(crate) to: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
-    square: Option<[f64; 4]>,
+    square: Option<Area>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    bar: Option<[f64; 4]>,
+    bar: Option<Area>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    text: Option<[f64; 4]>,
+    text: Option<Area>,
     /// The anchor: the middle of the upper edge of a step, the middle of the bar of a transition.
     #[serde(skip_serializing_if = "Option::is_none")]
     at: Option<[f64; 2]>,
@@ -82,11 +122,13 @@ pub(crate) struct Item {
     #[serde(skip_serializing_if = "Option::is_none")]
     steps: Option<[Vec<String>; 2]>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    step: Option<&'static str>,
+    step: Option<Sort>,
     #[serde(rename = "macro", skip_serializing_if = "Option::is_none")]
     expansion: Option<String>,
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     encloses: Vec<String>,
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     initial: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -111,7 +153,7 @@ impl Item {
 /// Draws a chart of a file.
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
     let readable = file.drawn_chart(&wish.chart);
-    let options = options(wish)?;
+    let options = options(wish);
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart =
         readable.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
@@ -119,25 +161,23 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
     let names = Names::new(&readable, chart);
     Ok(Drawn {
         chart: wish.chart.clone(),
-        kind: kind(chart.kind),
+        kind: sort(chart.kind),
         stale: readable.stale,
         area: area(drawing.area),
         items: drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect(),
     })
 }
 
-fn options(wish: &Wish) -> Result<Options, String> {
-    let look = match wish.look.as_deref() {
-        None | Some("iec60848") => Look::Iec60848,
-        Some("sfc") => Look::Sfc,
-        Some(other) => return Err(format!("there is no look `{other}`")),
-    };
-    Ok(Options {
-        look,
+fn options(wish: &Wish) -> Options {
+    Options {
+        look: match wish.look {
+            None | Some(Standard::Iec60848) => Look::Iec60848,
+            Some(Standard::Sfc) => Look::Sfc,
+        },
         actions: wish.actions.unwrap_or(true),
-        pages: wish.pages.as_deref() == Some("pl7"),
+        pages: wish.pages == Some(Pages::Pl7),
         ..Options::default()
-    })
+    }
 }
 
 /// The charts that a step opens: its expansion, or the charts that it encloses.
@@ -177,29 +217,33 @@ impl<'a> Names<'a> {
         let (from, to) = self.readable.units(item.at);
         let base = Item { area: area(item.area), svg: item.svg, far: item.far, from, to, ..Item::default() };
         let made = match item.part {
-            Part::Step { step, square } => self.step(step, square, base),
-            Part::Action { step, index } => {
+            g7_draw::Part::Step { step, square } => self.step(step, square, base),
+            g7_draw::Part::Action { step, index } => {
                 let name = self.name(step);
                 let source = self.readable.words(item.at);
                 let id = ids::action(chart, name, index as usize);
-                Item { id, part: "action", source: Some(source), ..base }
+                Item { id, part: Part::Action, source: Some(source), ..base }
             }
-            Part::Transition { transition, bar, text } => self.transition(transition, bar, text, base),
-            Part::Link { from, to, .. } => {
+            g7_draw::Part::Transition { transition, bar, text } => {
+                self.transition(transition, bar, text, base)
+            }
+            g7_draw::Part::Link { from, to, .. } => {
                 let id = ItemId::link(chart, self.end(from), self.end(to)).to_string();
-                Item { id, part: "link", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+                Item { id, part: Part::Link, ends: Some([self.end_id(from), self.end_id(to)]), ..base }
             }
-            Part::Connector { from, to, leaving, .. } => {
+            g7_draw::Part::Connector { from, to, leaving, .. } => {
                 let id = ItemId::connector(chart, self.end(from), self.end(to), leaving).to_string();
-                Item { id, part: "connector", ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+                Item { id, part: Part::Connector, ends: Some([self.end_id(from), self.end_id(to)]), ..base }
             }
-            Part::Comment { comment, place } => {
+            g7_draw::Part::Comment { comment, place } => {
                 let id = ItemId::note(chart, comment as usize).to_string();
                 let text = self.comments.get(comment as usize).map(|t| (*t).to_owned());
                 let at = Some([px(place.x), px(place.y)]);
-                Item { id, part: "comment", at, comment: text, ..base }
+                Item { id, part: Part::Comment, at, comment: text, ..base }
             }
-            Part::Text => Item { id: ItemId::other(chart, number).to_string(), part: "text", ..base },
+            g7_draw::Part::Text => {
+                Item { id: ItemId::other(chart, number).to_string(), part: Part::Text, ..base }
+            }
         };
         self.unique(made)
     }
@@ -218,16 +262,16 @@ impl<'a> Names<'a> {
     fn step(&self, number: u32, square: Rect, base: Item) -> Item {
         let Some(step) = self.steps.get(number as usize) else { return base };
         let (expansion, sort) = match &step.kind {
-            StepKind::Plain => (None, "plain"),
-            StepKind::Entry => (None, "entry"),
-            StepKind::Exit => (None, "exit"),
-            StepKind::Macro(name) => (Some(name.text.to_string()), "macro"),
-            StepKind::Enclosing => (None, "enclosing"),
+            StepKind::Plain => (None, Sort::Plain),
+            StepKind::Entry => (None, Sort::Entry),
+            StepKind::Exit => (None, Sort::Exit),
+            StepKind::Macro(name) => (Some(name.text.to_string()), Sort::Macro),
+            StepKind::Enclosing => (None, Sort::Enclosing),
         };
         let opened = opens(step).map(str::to_owned).filter(|n| Some(n) != expansion.as_ref());
         Item {
             id: ids::step(&self.chart.name.text, &step.name.text),
-            part: "step",
+            part: Part::Step,
             at: Some([px(square.x) + px(square.w) / 2.0, px(square.y)]),
             square: Some(area(square)),
             name: Some(step.name.text.to_string()),
@@ -244,7 +288,7 @@ impl<'a> Names<'a> {
         let Some(t) = self.transitions.get(number as usize) else { return base };
         Item {
             id: ids::transition(&self.chart.name.text, number as usize),
-            part: "transition",
+            part: Part::Transition,
             at: Some([px(bar.x) + px(bar.w) / 2.0, px(bar.y) + px(bar.h) / 2.0]),
             bar: Some(area(bar)),
             text: Some(area(text)),
@@ -282,6 +326,15 @@ fn px(hundredths: i32) -> f64 {
     f64::from(hundredths) / 10.0
 }
 
-fn area(r: Rect) -> [f64; 4] {
-    [px(r.x), px(r.y), px(r.w), px(r.h)]
+fn area(r: Rect) -> Area {
+    Area([px(r.x), px(r.y), px(r.w), px(r.h)])
+}
+
+/// The kind of a chart, as the page has it.
+pub(crate) fn sort(kind: ChartKind) -> ChartSort {
+    match kind {
+        ChartKind::Chart => ChartSort::Chart,
+        ChartKind::Expansion => ChartSort::Expansion,
+        ChartKind::Task => ChartSort::Task,
+    }
 }

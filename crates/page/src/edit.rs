@@ -10,6 +10,7 @@ use crate::places::{Change, changes, outward};
 
 /// The file after a change, and the change itself, which the text view makes too.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 pub(crate) struct Edited {
     #[serde(flatten)]
     overview: Overview,
@@ -17,6 +18,7 @@ pub(crate) struct Edited {
     select: Vec<ItemId>,
     #[serde(skip_serializing_if = "Option::is_none")]
     begin: Option<ItemId>,
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     told: Vec<String>,
 }

@@ -16,16 +16,28 @@ use crate::problems::{Row, row};
 
 /// A form in which a chart can be exported.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Form {
     word: &'static str,
     title: &'static str,
-    kind: &'static str,
+    kind: Sort,
     /// It is read back as a chart.
     read: bool,
 }
 
+/// The kinds of forms.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "FormSort"))]
+#[serde(rename_all = "snake_case")]
+enum Sort {
+    Chart,
+    Code,
+    Picture,
+}
+
 /// An exported chart.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Out {
     files: Vec<OutFile>,
     /// Problems: parts of the chart that the export does not contain; places are those of the
@@ -37,6 +49,7 @@ pub(crate) struct Out {
 
 /// One exported file.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct OutFile {
     name: String,
     text: String,
@@ -46,6 +59,7 @@ pub(crate) struct OutFile {
 
 /// The lines of a text, from 0, that belong to a symbol.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Mark {
     id: String,
     lines: Vec<usize>,
@@ -88,9 +102,9 @@ impl Code {
 /// All forms, in the order in which they are shown.
 pub(crate) fn forms() -> Vec<Form> {
     let chart =
-        |f: &g7_exchange::Format| Form { word: f.word, title: f.title, kind: "chart", read: f.is_read() };
-    let code = |code: Code| Form { word: code.word(), title: code.title(), kind: "code", read: false };
-    let picture = Form { word: "svg", title: "SVG", kind: "picture", read: false };
+        |f: &g7_exchange::Format| Form { word: f.word, title: f.title, kind: Sort::Chart, read: f.is_read() };
+    let code = |code: Code| Form { word: code.word(), title: code.title(), kind: Sort::Code, read: false };
+    let picture = Form { word: "svg", title: "SVG", kind: Sort::Picture, read: false };
     FORMATS
         .iter()
         .filter(|f| f.is_written())

@@ -1,18 +1,21 @@
 //! Answers to the text view, in the form in which they are sent.
 
 use g7_ide::{File, completion, hover, logic, references, search, tables, tokens};
+use g7_model::VarKind;
 use serde::{Deserialize, Serialize};
 
 use crate::places::units;
 
 /// The possible words, and the place at which the word begins.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Completions"))]
 pub(crate) struct Completion {
     from: usize,
     items: Vec<Choice>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Completion"))]
 struct Choice {
     label: String,
     kind: &'static str,
@@ -32,6 +35,7 @@ pub(crate) fn complete(file: &File, at: usize) -> Completion {
 
 /// An explanation of a piece of the text.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Hover {
     from: usize,
     to: usize,
@@ -63,6 +67,7 @@ pub(crate) fn references(file: &File, at: usize) -> Vec<(usize, usize)> {
 
 /// A result of a search.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "SearchHit", optional_fields))]
 pub(crate) struct Hit {
     from: usize,
     to: usize,
@@ -82,8 +87,20 @@ pub(crate) fn search(file: &File, what: &str) -> Vec<Hit> {
     search::search(file, what).into_iter().map(hit).collect()
 }
 
+/// The classes of variables.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "VariableClass"))]
+#[serde(rename_all = "snake_case")]
+enum Class {
+    Input,
+    Output,
+    Var,
+    Const,
+}
+
 /// The tables of variables and steps.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Symbols"))]
 pub(crate) struct Tables {
     stale: bool,
     variables: Vec<Variable>,
@@ -91,9 +108,10 @@ pub(crate) struct Tables {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "VariableRow", optional_fields))]
 struct Variable {
     name: String,
-    class: &'static str,
+    class: Class,
     #[serde(rename = "type")]
     ty: String,
     init: String,
@@ -110,6 +128,7 @@ struct Variable {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "StepSymbol"))]
 struct Step {
     id: String,
     name: String,
@@ -127,7 +146,12 @@ pub(crate) fn tables(file: &File) -> Tables {
         let (from, to) = readable.units(v.at);
         Variable {
             name: v.name,
-            class: v.class,
+            class: match v.class {
+                VarKind::Input => Class::Input,
+                VarKind::Output => Class::Output,
+                VarKind::Var => Class::Var,
+                VarKind::Const => Class::Const,
+            },
             ty: v.ty,
             init: v.init,
             address: v.address,
@@ -154,6 +178,7 @@ pub(crate) fn tables(file: &File) -> Tables {
 
 /// A language of controllers.
 #[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Tongue {
     St,
@@ -161,21 +186,37 @@ pub(crate) enum Tongue {
     Ld,
 }
 
+/// The part of a symbol that a piece of logic is.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicPart"))]
+#[serde(rename_all = "snake_case")]
+enum Part {
+    Receptivity,
+    Condition,
+    Event,
+    Body,
+}
+
 /// A piece of logic: the part of the symbol that it is, the number of the action in its step, and its
 /// text in each language.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicPiece", optional_fields))]
 pub(crate) struct Piece {
-    part: &'static str,
+    part: Part,
     #[serde(skip_serializing_if = "Option::is_none")]
     index: Option<usize>,
     forms: Vec<Form>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicForm"))]
 struct Form {
     tongue: Tongue,
+    /// Null if the language cannot express it.
     text: Option<String>,
+    /// Ladder has one.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
     picture: Option<String>,
 }
 
@@ -191,10 +232,10 @@ pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     };
     let piece = |p: logic::Piece| Piece {
         part: match p.part {
-            logic::Part::Receptivity => "receptivity",
-            logic::Part::Condition => "condition",
-            logic::Part::Event => "event",
-            logic::Part::Body => "body",
+            logic::Part::Receptivity => Part::Receptivity,
+            logic::Part::Condition => Part::Condition,
+            logic::Part::Event => Part::Event,
+            logic::Part::Body => Part::Body,
         },
         index: p.index,
         forms: p.forms.into_iter().map(form).collect(),

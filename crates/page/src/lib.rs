@@ -33,9 +33,13 @@ mod redrawn;
 mod request;
 mod run;
 mod testing;
+#[cfg(feature = "types")]
+pub mod types;
 pub mod wasm;
 
 pub use explain::explain;
 pub use page::Page;
 pub use prove::saved;
+#[cfg(feature = "types")]
+pub use request::types as protocol;
 pub use run::{Places, Show, show};

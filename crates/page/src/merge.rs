@@ -8,6 +8,7 @@ use serde::Serialize;
 
 /// The result of a merge.
 #[derive(Debug, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Merged {
     /// The text with both changes; absent if they contradict each other.
     text: Option<String>,

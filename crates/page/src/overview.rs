@@ -1,16 +1,17 @@
 //! The overview of a file that the frame of the page shows: charts, problems, plants, tests.
 
 use g7_compile::resolve::{of_profile, with_switch};
+use g7_edit::ChartSort;
 use g7_ide::File;
-use g7_ide::tables::kind;
 use g7_model::{Document, Nanos, ProfileName, Switch};
 use serde::Serialize;
 
-use crate::drawing::opens;
+use crate::drawing::{opens, sort};
 use crate::problems;
 
 /// The overview of a file.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Look"))]
 pub(crate) struct Overview {
     file: String,
     version: u64,
@@ -32,6 +33,7 @@ pub(crate) struct Overview {
 
 /// A switch of the profile.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct SwitchRow {
     /// The words for its two positions.
     words: [&'static str; 2],
@@ -44,6 +46,7 @@ struct SwitchRow {
 
 /// The greatest number of passes in a scan.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct Bound {
     usual: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -51,9 +54,10 @@ struct Bound {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct ChartRow {
     name: String,
-    kind: &'static str,
+    kind: ChartSort,
     #[serde(skip_serializing_if = "Option::is_none")]
     comment: Option<String>,
     from: usize,
@@ -66,6 +70,7 @@ struct ChartRow {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct TestRow {
     name: String,
     from: usize,
@@ -132,7 +137,7 @@ fn charts(file: &File) -> Vec<ChartRow> {
         let (from, to) = if readable.stale { (0, 0) } else { file.units(c.at.0) };
         ChartRow {
             name: c.name.text.to_string(),
-            kind: kind(c.kind),
+            kind: sort(c.kind),
             comment: c.comment.as_deref().map(str::to_owned),
             from,
             to,

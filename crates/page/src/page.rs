@@ -1,21 +1,25 @@
-//! The open files and runs, and the dispatch of messages.
+//! The open files and runs, and the answers to messages.
 
 use std::collections::BTreeMap;
 
-use crate::answer::{self, Answer, ok};
-use crate::explain::explain;
-use crate::language;
-use crate::merge::merge;
-use crate::overview::overview;
-use crate::places::inward;
-use crate::prove::{self, Proof};
-use crate::redrawn::Shown;
-use crate::request::Request;
-use crate::run::{self, Run};
-use crate::{drawing, edit, export, testing};
+use g7_edit::{Gesture, ItemId};
 use g7_ide::File;
 use g7_ide::gestures;
 use g7_model::Language;
+
+use crate::answer::{self, Before, Breaks, Explained, Style, Text};
+use crate::edit::{self, Edited};
+use crate::explain::explain;
+use crate::export::{self, Form, Out};
+use crate::language::{self, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
+use crate::merge::{Merged, merge};
+use crate::overview::{Overview, overview};
+use crate::places::{Change, inward};
+use crate::prove::{self, Proof};
+use crate::redrawn::{Redrawn, Shown};
+use crate::request::{Answers, Request};
+use crate::run::{self, Frame, Lanes, Run, Started, Swapped};
+use crate::{drawing, testing};
 
 /// A page: its open files and its runs.
 #[derive(Default)]
@@ -39,115 +43,11 @@ impl Page {
 
     /// Answers a message with `{"ok":…}` or with `{"no":"a sentence for the user"}`.
     pub fn call(&mut self, message: &str) -> String {
-        let answer = match serde_json::from_str(message) {
-            Ok(request) => self.answer(request),
+        let answer = match serde_json::from_str::<Request>(message) {
+            Ok(request) => Answers::answer(self, request),
             Err(e) => Err(format!("this message means nothing: {e}")),
         };
         answer::text(answer)
-    }
-
-    fn answer(&mut self, request: Request) -> Answer {
-        match request {
-            Request::Open { file, text } => self.open(file, text),
-            Request::Close { file } => {
-                self.files.remove(&file);
-                self.proofs.remove(&file);
-                self.shown.forget(&file);
-                ok(&())
-            }
-            Request::Speak { language } => {
-                self.language = Language::of(&language).unwrap_or_default();
-                for file in self.files.values_mut() {
-                    file.language = self.language;
-                }
-                ok(&())
-            }
-            Request::Look { file } => self.look(&file),
-            Request::Text { file } => ok(&serde_json::json!({ "text": self.file(&file)?.text() })),
-            Request::Splice { file, splices, unit } => {
-                let open = self.file_mut(&file)?;
-                let splices = inward(open, &splices);
-                open.change(&splices, !unit)?;
-                self.look(&file)
-            }
-            Request::Edit { file, gesture } => ok(&edit::edit(&file, self.file_mut(&file)?, &gesture)?),
-            Request::Undo { file } => ok(&edit::travel(&file, self.file_mut(&file)?, true)?),
-            Request::Redo { file } => ok(&edit::travel(&file, self.file_mut(&file)?, false)?),
-            Request::Format { file } => ok(&edit::format(&file, self.file_mut(&file)?)?),
-            Request::References { file, at } => ok(&language::references(self.file(&file)?, at)),
-            Request::Copy { file, ids } => {
-                let text = gestures::copy(self.file(&file)?, &ids);
-                ok(&serde_json::json!({ "text": text }))
-            }
-            Request::Merge { base, mine, theirs } => ok(&merge(&base, &mine, &theirs)?),
-            Request::Drawing(wish) => {
-                let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
-                self.shown.answer(&wish, drawn, |redrawn| ok(redrawn))
-            }
-            Request::Forms => ok(&export::forms()),
-            Request::Export { file, to } => ok(&export::export(&file, self.file(&file)?, &to)?),
-            Request::Logic { file, id } => ok(&language::logic(self.file(&file)?, &id)?),
-            Request::LogicRead { tongue, text } => {
-                ok(&serde_json::json!({ "text": language::logic_read(tongue, &text)? }))
-            }
-            Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
-            Request::Explain { code } => {
-                let text = explain(&code, g7_model::Language::English)
-                    .ok_or_else(|| format!("there is no problem `{code}`"))?;
-                ok(&serde_json::json!({ "markdown": text }))
-            }
-            Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
-            Request::Prove { file, limits } => self.prove(&file, limits),
-            Request::ProveWays { file, wish } => ok(&prove::ways(self.file(&file)?, &wish)?),
-            Request::Compare(wish) => {
-                let [a, b] = &wish.files;
-                ok(&prove::compared([self.file(a)?, self.file(b)?], &wish)?)
-            }
-            Request::Before { file } => ok(&serde_json::json!({ "text": self.file(&file)?.before() })),
-            Request::Tokens { file, from, to } => ok(&language::tokens(self.file(&file)?, from, to)),
-            Request::Complete { file, at } => ok(&language::complete(self.file(&file)?, at)),
-            Request::Hover { file, at } => ok(&language::hover(self.file(&file)?, at)),
-            Request::Symbols { file } => ok(&language::tables(self.file(&file)?)),
-            Request::Search { file, text } => ok(&language::search(self.file(&file)?, &text)),
-            Request::RunStart(wish) => self.start(&wish),
-            Request::RunStop { run } => {
-                self.runs.remove(&run);
-                ok(&())
-            }
-            Request::RunAdvance { run, ms, most_scans, times } => {
-                self.with(&run, times, |r| r.advance(ms, most_scans))
-            }
-            Request::RunScan { run, times } => self.with(&run, times, Run::one_scan),
-            Request::RunPass { run, times } => self.with(&run, times, Run::pass),
-            Request::RunSet { run, signal, value } => self.with(&run, false, |r| r.set(signal, &value)),
-            Request::RunToggle { run, signal } => self.with(&run, false, |r| r.toggle(signal)),
-            Request::RunForce { run, signal, value } => self.with(&run, false, |r| r.force(signal, &value)),
-            Request::RunRelease { run, signal } => self.with(&run, false, |r| match signal {
-                Some(signal) => r.release(signal),
-                None => r.release_all(),
-            }),
-            Request::RunRestart { run, warm } => self.with(&run, true, |r| r.restart(warm)),
-            Request::RunSeek { run, ms } => self.with(&run, true, |r| r.seek(ms)),
-            Request::RunLive { run, here } => self.with(&run, true, |r| {
-                r.live(here);
-                Ok(())
-            }),
-            Request::RunBreaks { run, ids } => {
-                let run = self.run(&run)?;
-                run.set_breaks(&ids);
-                ok(&serde_json::json!({ "ids": run.break_ids() }))
-            }
-            Request::RunSwap { run, file, force } => self.swap(&run, &file, force),
-            Request::RunFrame { run, full, times } => ok(&self.run(&run)?.frame(full, times)),
-            Request::RunSignals { run } => ok(&self.run(&run)?.started()),
-            Request::RunLanes { run, signals, from_ms, to_ms, most } => {
-                ok(&self.run(&run)?.lanes(&signals, from_ms, to_ms, most))
-            }
-            Request::RunExport { run, signals, r#as, from_ms, to_ms } => {
-                let text = self.run(&run)?.export(&signals, r#as, from_ms, to_ms)?;
-                ok(&serde_json::json!({ "text": text }))
-            }
-        }
     }
 
     fn file(&self, name: &str) -> Result<&File, String> {
@@ -162,7 +62,26 @@ impl Page {
         self.runs.get_mut(name).ok_or_else(|| format!("there is no run `{name}`"))
     }
 
-    fn open(&mut self, name: String, text: String) -> Answer {
+    /// Executes a change of the history.
+    fn travel(&mut self, name: &str, back: bool) -> Result<Edited, String> {
+        edit::travel(name, self.file_mut(name)?, back)
+    }
+
+    /// Does something with a run and answers with what changed.
+    fn with(
+        &mut self,
+        name: &str,
+        times: bool,
+        work: impl FnOnce(&mut Run) -> Result<(), String>,
+    ) -> Result<Frame, String> {
+        let run = self.run(name)?;
+        work(run)?;
+        Ok(run.frame(false, times))
+    }
+}
+
+impl Answers for Page {
+    fn open(&mut self, name: String, text: String) -> Result<Overview, String> {
         if self.files.len() >= MOST && !self.files.contains_key(&name) {
             return Err("too many files are open: close one".to_owned());
         }
@@ -170,44 +89,249 @@ impl Page {
         file.language = self.language;
         let name = if file.imported { with_ending(&name) } else { name };
         self.files.insert(name.clone(), file);
-        self.look(&name)
+        self.look(name)
     }
 
-    fn look(&self, name: &str) -> Answer {
-        ok(&overview(name, self.file(name)?))
+    fn close(&mut self, file: String) -> Result<(), String> {
+        self.files.remove(&file);
+        self.proofs.remove(&file);
+        self.shown.forget(&file);
+        Ok(())
     }
 
-    fn prove(&mut self, name: &str, limits: prove::Limits) -> Answer {
-        let known = self.proofs.remove(name);
-        let (proof, report) = prove::prove(self.file(name)?, known, limits);
-        self.proofs.insert(name.to_owned(), proof);
-        ok(&report)
+    fn speak(&mut self, language: String) -> Result<(), String> {
+        self.language = Language::of(&language).unwrap_or_default();
+        for file in self.files.values_mut() {
+            file.language = self.language;
+        }
+        Ok(())
     }
 
-    fn start(&mut self, wish: &run::Start) -> Answer {
+    fn look(&mut self, file: String) -> Result<Overview, String> {
+        Ok(overview(&file, self.file(&file)?))
+    }
+
+    fn text(&mut self, file: String) -> Result<Text, String> {
+        Ok(Text { text: self.file(&file)?.text().to_owned() })
+    }
+
+    fn splice(&mut self, file: String, splices: Vec<Change>, unit: bool) -> Result<Overview, String> {
+        let open = self.file_mut(&file)?;
+        let splices = inward(open, &splices);
+        open.change(&splices, !unit)?;
+        self.look(file)
+    }
+
+    fn edit(&mut self, file: String, gesture: Gesture) -> Result<Edited, String> {
+        edit::edit(&file, self.file_mut(&file)?, &gesture)
+    }
+
+    fn undo(&mut self, file: String) -> Result<Edited, String> {
+        self.travel(&file, true)
+    }
+
+    fn redo(&mut self, file: String) -> Result<Edited, String> {
+        self.travel(&file, false)
+    }
+
+    fn copy(&mut self, file: String, ids: Vec<ItemId>) -> Result<Text, String> {
+        Ok(Text { text: gestures::copy(self.file(&file)?, &ids) })
+    }
+
+    fn merge(&mut self, base: String, mine: String, theirs: String) -> Result<Merged, String> {
+        merge(&base, &mine, &theirs)
+    }
+
+    fn format(&mut self, file: String) -> Result<Edited, String> {
+        edit::format(&file, self.file_mut(&file)?)
+    }
+
+    fn references(&mut self, file: String, at: usize) -> Result<Vec<(usize, usize)>, String> {
+        Ok(language::references(self.file(&file)?, at))
+    }
+
+    fn drawing(&mut self, wish: drawing::Wish) -> Result<Redrawn<'_>, String> {
+        let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
+        Ok(self.shown.answer(&wish, drawn))
+    }
+
+    fn forms(&mut self) -> Result<Vec<Form>, String> {
+        Ok(export::forms())
+    }
+
+    fn export(&mut self, file: String, to: String) -> Result<Out, String> {
+        export::export(&file, self.file(&file)?, &to)
+    }
+
+    fn logic(&mut self, file: String, id: String) -> Result<Vec<Piece>, String> {
+        language::logic(self.file(&file)?, &id)
+    }
+
+    fn logic_read(&mut self, tongue: Tongue, text: String) -> Result<Text, String> {
+        Ok(Text { text: language::logic_read(tongue, &text)? })
+    }
+
+    fn style(&mut self, dark: bool) -> Result<Style, String> {
+        Ok(Style { css: g7_draw::style(dark) })
+    }
+
+    fn explain(&mut self, code: String) -> Result<Explained, String> {
+        let page = explain(&code, Language::English);
+        Ok(Explained { markdown: page.ok_or_else(|| format!("there is no problem `{code}`"))? })
+    }
+
+    fn test(&mut self, file: String, name: Option<String>) -> Result<testing::Report, String> {
+        testing::test(self.file(&file)?, name.as_deref())
+    }
+
+    fn prove(&mut self, file: String, limits: prove::Limits) -> Result<prove::Report, String> {
+        let known = self.proofs.remove(&file);
+        let (proof, report) = prove::prove(self.file(&file)?, known, limits);
+        self.proofs.insert(file, proof);
+        Ok(report)
+    }
+
+    fn prove_ways(&mut self, file: String, wish: prove::Wish) -> Result<prove::Ways, String> {
+        prove::ways(self.file(&file)?, &wish)
+    }
+
+    fn compare(&mut self, wish: prove::Both) -> Result<prove::Compared, String> {
+        let [a, b] = &wish.files;
+        prove::compared([self.file(a)?, self.file(b)?], &wish)
+    }
+
+    fn before(&mut self, file: String) -> Result<Before, String> {
+        Ok(Before { text: self.file(&file)?.before() })
+    }
+
+    fn tokens(&mut self, file: String, from: usize, to: usize) -> Result<Vec<Coloured>, String> {
+        Ok(language::tokens(self.file(&file)?, from, to))
+    }
+
+    fn complete(&mut self, file: String, at: usize) -> Result<Completion, String> {
+        Ok(language::complete(self.file(&file)?, at))
+    }
+
+    fn hover(&mut self, file: String, at: usize) -> Result<Option<Hover>, String> {
+        Ok(language::hover(self.file(&file)?, at))
+    }
+
+    fn symbols(&mut self, file: String) -> Result<Tables, String> {
+        Ok(language::tables(self.file(&file)?))
+    }
+
+    fn search(&mut self, file: String, text: String) -> Result<Vec<Hit>, String> {
+        Ok(language::search(self.file(&file)?, &text))
+    }
+
+    fn run_start(&mut self, wish: run::Start) -> Result<Started, String> {
         if self.runs.len() >= MOST && !self.runs.contains_key(&wish.run) {
             return Err("too many runs: stop one".to_owned());
         }
-        let mut run = run::start(&self.file(&wish.file)?.source, wish)?;
-        let started = ok(&run.started());
-        self.runs.insert(wish.run.clone(), run);
-        started
+        let mut run = run::start(&self.file(&wish.file)?.source, &wish)?;
+        let started = run.started();
+        self.runs.insert(wish.run, run);
+        Ok(started)
     }
 
-    /// Continues a run with a changed text: answers with the losses, or with the description of the
-    /// new run.
-    fn swap(&mut self, run: &str, file: &str, force: bool) -> Answer {
-        let open = self.files.get(file).ok_or_else(|| format!("{file} is not open"))?;
-        let run = self.runs.get_mut(run).ok_or_else(|| format!("there is no run `{run}`"))?;
+    fn run_advance(
+        &mut self,
+        run: String,
+        ms: f64,
+        most_scans: Option<u32>,
+        times: bool,
+    ) -> Result<Frame, String> {
+        self.with(&run, times, |r| r.advance(ms, most_scans))
+    }
+
+    fn run_scan(&mut self, run: String, times: bool) -> Result<Frame, String> {
+        self.with(&run, times, Run::one_scan)
+    }
+
+    fn run_pass(&mut self, run: String, times: bool) -> Result<Frame, String> {
+        self.with(&run, times, Run::pass)
+    }
+
+    fn run_set(&mut self, run: String, signal: usize, value: String) -> Result<Frame, String> {
+        self.with(&run, false, |r| r.set(signal, &value))
+    }
+
+    fn run_toggle(&mut self, run: String, signal: usize) -> Result<Frame, String> {
+        self.with(&run, false, |r| r.toggle(signal))
+    }
+
+    fn run_force(&mut self, run: String, signal: usize, value: String) -> Result<Frame, String> {
+        self.with(&run, false, |r| r.force(signal, &value))
+    }
+
+    fn run_release(&mut self, run: String, signal: Option<usize>) -> Result<Frame, String> {
+        self.with(&run, false, |r| match signal {
+            Some(signal) => r.release(signal),
+            None => r.release_all(),
+        })
+    }
+
+    fn run_restart(&mut self, run: String, warm: bool) -> Result<Frame, String> {
+        self.with(&run, true, |r| r.restart(warm))
+    }
+
+    fn run_seek(&mut self, run: String, ms: f64) -> Result<Frame, String> {
+        self.with(&run, true, |r| r.seek(ms))
+    }
+
+    fn run_live(&mut self, run: String, here: bool) -> Result<Frame, String> {
+        self.with(&run, true, |r| {
+            r.live(here);
+            Ok(())
+        })
+    }
+
+    fn run_breaks(&mut self, run: String, ids: Vec<String>) -> Result<Breaks, String> {
+        let run = self.run(&run)?;
+        run.set_breaks(&ids);
+        Ok(Breaks { ids: run.break_ids() })
+    }
+
+    fn run_swap(&mut self, run: String, file: String, force: bool) -> Result<Swapped, String> {
+        let open = self.files.get(&file).ok_or_else(|| format!("{file} is not open"))?;
+        let run = self.runs.get_mut(&run).ok_or_else(|| format!("there is no run `{run}`"))?;
         let lost = run.swap(&open.source, force)?;
-        if lost.is_empty() { ok(&run.started()) } else { ok(&serde_json::json!({ "lost": lost })) }
+        Ok(if lost.is_empty() { Swapped::Started(Box::new(run.started())) } else { Swapped::Lost { lost } })
     }
 
-    /// Does something with a run and answers with what changed.
-    fn with(&mut self, name: &str, times: bool, work: impl FnOnce(&mut Run) -> Result<(), String>) -> Answer {
-        let run = self.run(name)?;
-        work(run)?;
-        ok(&run.frame(false, times))
+    fn run_stop(&mut self, run: String) -> Result<(), String> {
+        self.runs.remove(&run);
+        Ok(())
+    }
+
+    fn run_frame(&mut self, run: String, full: bool, times: bool) -> Result<Frame, String> {
+        Ok(self.run(&run)?.frame(full, times))
+    }
+
+    fn run_signals(&mut self, run: String) -> Result<Started, String> {
+        Ok(self.run(&run)?.started())
+    }
+
+    fn run_lanes(
+        &mut self,
+        run: String,
+        signals: Vec<usize>,
+        from_ms: f64,
+        to_ms: f64,
+        most: usize,
+    ) -> Result<Lanes, String> {
+        Ok(self.run(&run)?.lanes(&signals, from_ms, to_ms, most))
+    }
+
+    fn run_export(
+        &mut self,
+        run: String,
+        signals: Vec<usize>,
+        form: run::Form,
+        from_ms: Option<f64>,
+        to_ms: Option<f64>,
+    ) -> Result<Text, String> {
+        Ok(Text { text: self.run(&run)?.export(&signals, form, from_ms, to_ms)? })
     }
 }
 

@@ -8,6 +8,7 @@ use serde::{Deserialize, Serialize};
 
 /// A replacement in a text; places are in code units.
 #[derive(Clone, Debug, Deserialize, Serialize, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Splice"))]
 pub(crate) struct Change {
     pub(crate) from: usize,
     pub(crate) to: usize,

@@ -2,17 +2,18 @@
 
 use g7_ide::File;
 use g7_ide::ids;
-use g7_model::{Document, Problem};
+use g7_model::{Document, Problem, Severity};
 use serde::Serialize;
 
 use crate::places::{Change, outward};
 
 /// One problem.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Problem", optional_fields))]
 pub(crate) struct Row {
     code: &'static str,
     title: String,
-    severity: &'static str,
+    severity: Grave,
     what: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     help: Option<String>,
@@ -21,12 +22,23 @@ pub(crate) struct Row {
     line: usize,
     column: usize,
     related: Vec<Related>,
+    /// The ids of the symbols that it marks.
     items: Vec<String>,
     fixes: Vec<Fix>,
 }
 
+/// How grave a problem is.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Severity"))]
+#[serde(rename_all = "snake_case")]
+enum Grave {
+    Error,
+    Warning,
+}
+
 /// A change that fixes a problem.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Fix {
     title: String,
     splices: Vec<Change>,
@@ -36,6 +48,7 @@ struct Fix {
 const SOME: usize = 8;
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Related {
     from: usize,
     to: usize,
@@ -65,7 +78,10 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
     Row {
         code: p.code.id,
         title: p.code.title_in(file.language),
-        severity: p.severity().name(),
+        severity: match p.severity() {
+            Severity::Warning => Grave::Warning,
+            Severity::Error => Grave::Error,
+        },
         what: p.what.in_language(file.language),
         help: p.help.as_ref().map(|h| h.in_language(file.language)),
         from,

@@ -18,12 +18,15 @@ const MOST: usize = 8;
 /// The drawings that the page has, the latest last.
 #[derive(Default)]
 pub(crate) struct Shown {
-    list: Vec<(String, u64, Vec<Item>)>,
+    list: Vec<(String, u64, Drawn)>,
+    /// The drawing that was answered last, which its answer borrows; with its key if it is to be kept.
+    last: Option<(Option<String>, Drawn)>,
     number: u64,
 }
 
 /// An answer: a whole drawing, or its difference from another.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 pub(crate) struct Redrawn<'a> {
     #[serde(flatten)]
     drawn: &'a Drawn,
@@ -35,11 +38,13 @@ pub(crate) struct Redrawn<'a> {
     since: Option<u64>,
     items: Vec<Sent<'a>>,
     /// The first and the last place in the text of each symbol that is the same.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     places: Vec<usize>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(untagged)]
 enum Sent<'a> {
     /// The symbol with this number in the other drawing, but for its places in the text.
@@ -50,36 +55,53 @@ enum Sent<'a> {
         #[serde(flatten)]
         item: &'a Item,
     },
-    /// A symbol with its drawing.
-    New {
-        svg: &'a str,
-        far: &'a str,
-        #[serde(flatten)]
-        item: &'a Item,
-    },
+    New(Whole<'a>),
+}
+
+/// A symbol with its drawing.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Item"))]
+struct Whole<'a> {
+    /// The SVG of the symbol.
+    svg: &'a str,
+    /// Path data for zoomed-out views.
+    far: &'a str,
+    #[serde(flatten)]
+    item: &'a Item,
 }
 
 impl Shown {
+    /// Puts the drawing that was answered last into the list, if it is to be kept.
+    fn settle(&mut self) {
+        if let Some((Some(key), drawn)) = self.last.take() {
+            self.list.push((key, self.number, drawn));
+            if self.list.len() > MOST {
+                self.list.remove(0);
+            }
+        }
+    }
+
     /// Forgets the drawings of a file.
     pub(crate) fn forget(&mut self, file: &str) {
+        self.settle();
         self.list.retain(|(key, ..)| key.split('\n').next() != Some(file));
     }
 
     /// Answers with a drawing, as its difference from the one that the page has, if that is known, and
     /// keeps it if the page asks so.
-    pub(crate) fn answer<T>(&mut self, wish: &Wish, drawn: Drawn, send: impl FnOnce(&Redrawn<'_>) -> T) -> T {
-        let Some(since) = wish.since else { return send(&Redrawn::new(&drawn, None, None)) };
+    pub(crate) fn answer(&mut self, wish: &Wish, drawn: Drawn) -> Redrawn<'_> {
+        self.settle();
+        let Some(since) = wish.since else {
+            let (_, drawn) = self.last.insert((None, drawn));
+            return Redrawn::new(drawn, None, None);
+        };
         let key = wish.key();
         let place = self.list.iter().position(|(k, ..)| *k == key);
         let known = place.map(|p| self.list.remove(p)).filter(|(_, number, _)| *number == since);
         self.number += 1;
-        let old = known.as_ref().map(|(_, number, items)| (*number, items.as_slice()));
-        let out = send(&Redrawn::new(&drawn, Some(self.number), old));
-        self.list.push((key, self.number, drawn.items));
-        if self.list.len() > MOST {
-            self.list.remove(0);
-        }
-        out
+        let old = known.as_ref().map(|(_, number, drawn)| (*number, drawn.items.as_slice()));
+        let (_, drawn) = self.last.insert((Some(key), drawn));
+        Redrawn::new(drawn, Some(self.number), old)
     }
 }
 
@@ -102,7 +124,7 @@ impl<'a> Redrawn<'a> {
                 Sent::Same(k)
             }
             Some((k, _)) => Sent::Alike { r#as: k, item },
-            None => Sent::New { svg: &item.svg, far: &item.far, item },
+            None => Sent::New(Whole { svg: &item.svg, far: &item.far, item }),
         });
         let items = items.collect();
         Redrawn { drawn, number, since, items, places }

@@ -1,224 +1,268 @@
-//! The messages that the page can send.
+//! The messages that the page can send, each with the type of its answer: one table, of which the requests, the
+//! trait that answers them and the page's `protocol.ts` are made.
 
 use serde::Deserialize;
 
-/// A message of the page.
-#[derive(Debug, Deserialize)]
-#[serde(tag = "do", rename_all = "snake_case")]
-pub(crate) enum Request {
-    Open {
-        file: String,
-        text: String,
-    },
-    Close {
-        file: String,
-    },
+use crate::answer::{Answer, Before, Breaks, Explained, Style, Text, ok};
+use crate::drawing::Wish as Drawing;
+use crate::edit::Edited;
+use crate::export::{Form, Out};
+use crate::language::{Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
+use crate::merge::Merged;
+use crate::overview::Overview;
+use crate::places::Change;
+use crate::prove::{Both, Compared, Limits, Report as Proved, Ways, Wish as Refuted};
+use crate::redrawn::Redrawn;
+use crate::run::{Form as SignalsForm, Frame, Lanes, Start, Started, Swapped};
+use crate::testing::Report as Tested;
+
+/// Makes of each row `fn name(fields) -> Answer;` a request with these fields and a method of [`Answers`]. A
+/// method that returns something else does not compile.
+macro_rules! requests {
+    ($(
+        $(#[doc = $doc:literal])*
+        fn $name:ident($($(#[$of:meta])* $field:ident: $ty:ty),* $(,)?) -> $answer:ty;
+    )*) => {
+        /// A message of the page.
+        #[derive(Debug, Deserialize)]
+        #[serde(tag = "do")]
+        #[allow(non_camel_case_types, reason = "the names are those of the messages")]
+        pub(crate) enum Request {
+            $($name($name),)*
+        }
+
+        $(
+            /// The contents of the message of this name.
+            #[derive(Debug, Deserialize)]
+            #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
+            #[allow(non_camel_case_types, reason = "the names are those of the messages")]
+            pub(crate) struct $name {
+                $($(#[$of])* $field: $ty,)*
+            }
+        )*
+
+        /// Answers messages.
+        pub(crate) trait Answers {
+            $(
+                $(#[doc = $doc])*
+                fn $name(&mut self, $($field: $ty),*) -> Result<$answer, String>;
+            )*
+
+            fn answer(&mut self, request: Request) -> Answer {
+                match request {
+                    $(Request::$name($name { $($field),* }) => ok(&self.$name($($field),*)?),)*
+                }
+            }
+        }
+
+        /// The types of all messages.
+        #[cfg(feature = "types")]
+        pub fn types() -> crate::types::Types {
+            let mut types = crate::types::Types::default();
+            $(types.row::<$name, $answer>(stringify!($name), concat!($($doc, "\n"),*));)*
+            types
+        }
+    };
+}
+
+requests! {
+    /// Opens a text under a name; a file that is imported gets another name.
+    fn open(file: String, text: String) -> Overview;
+
+    /// Forgets a file.
+    fn close(file: String) -> ();
+
     /// Chooses the language of the answers: `en`, `fr`, `pt`.
-    Speak {
-        language: String,
-    },
-    Look {
+    fn speak(language: String) -> ();
+
+    fn look(file: String) -> Overview;
+
+    fn text(file: String) -> Text;
+
+    /// Changes the text as it is typed. A unit is undone alone.
+    fn splice(
         file: String,
-    },
-    Text {
-        file: String,
-    },
-    Splice {
-        file: String,
-        splices: Vec<crate::places::Change>,
+        splices: Vec<Change>,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         unit: bool,
-    },
-    Edit {
-        file: String,
-        gesture: g7_edit::Gesture,
-    },
-    Undo {
-        file: String,
-    },
-    Redo {
-        file: String,
-    },
+    ) -> Overview;
+
+    /// Executes a gesture.
+    fn edit(file: String, gesture: g7_edit::Gesture) -> Edited;
+
+    fn undo(file: String) -> Edited;
+
+    fn redo(file: String) -> Edited;
+
     /// Copies symbols as text, to be pasted elsewhere.
-    Copy {
-        file: String,
-        ids: Vec<g7_edit::ItemId>,
-    },
+    fn copy(file: String, ids: Vec<g7_edit::ItemId>) -> Text;
+
     /// Merges two changes of one text.
-    Merge {
-        base: String,
-        mine: String,
-        theirs: String,
-    },
-    Format {
-        file: String,
-    },
-    References {
-        file: String,
-        at: usize,
-    },
-    Drawing(crate::drawing::Wish),
+    fn merge(base: String, mine: String, theirs: String) -> Merged;
+
+    fn format(file: String) -> Edited;
+
+    /// The places that name the same part as the word at a place.
+    fn references(file: String, at: usize) -> Vec<(usize, usize)>;
+
+    fn drawing(#[serde(flatten)] wish: Drawing) -> Redrawn<'_>;
+
     /// Lists the forms in which a chart can be exported.
-    Forms,
+    fn forms() -> Vec<Form>;
+
     /// Exports a file in one of them.
-    Export {
-        file: String,
-        to: String,
-    },
+    fn export(file: String, to: String) -> Out;
+
     /// The logic of a symbol in the languages of controllers.
-    Logic {
-        file: String,
-        id: String,
-    },
+    fn logic(file: String, id: String) -> Vec<Piece>;
+
     /// Converts logic in one of these languages to an expression of the text.
-    LogicRead {
-        tongue: crate::language::Tongue,
-        text: String,
-    },
+    fn logic_read(tongue: Tongue, text: String) -> Text;
+
     /// The style sheet of the drawings.
-    Style {
+    fn style(
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         dark: bool,
-    },
-    Explain {
-        code: String,
-    },
+    ) -> Style;
+
+    /// The page on a kind of problem.
+    fn explain(code: String) -> Explained;
+
     /// Runs the tests whose titles contain `name`, or all.
-    Test {
-        file: String,
-        name: Option<String>,
-    },
+    fn test(file: String, name: Option<String>) -> Tested;
+
     /// Answers all questions about the file, as far as the limits go.
-    Prove {
-        file: String,
-        #[serde(flatten)]
-        limits: crate::prove::Limits,
-    },
+    fn prove(file: String, #[serde(flatten)] limits: Limits) -> Proved;
+
     /// The ways on from a refuted claim.
-    ProveWays {
-        file: String,
-        #[serde(flatten)]
-        wish: crate::prove::Wish,
-    },
+    fn prove_ways(file: String, #[serde(flatten)] wish: Refuted) -> Ways;
+
     /// Compares two files for every sequence of inputs, as far as the limits go.
-    Compare(crate::prove::Both),
+    fn compare(#[serde(flatten)] wish: Both) -> Compared;
+
     /// The text before the last change.
-    Before {
-        file: String,
-    },
-    Tokens {
+    fn before(file: String) -> Before;
+
+    /// The classes of the tokens in a part of the text.
+    fn tokens(
         file: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         from: usize,
         #[serde(default = "end")]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         to: usize,
-    },
-    Complete {
-        file: String,
-        at: usize,
-    },
-    Hover {
-        file: String,
-        at: usize,
-    },
-    Symbols {
-        file: String,
-    },
-    Search {
-        file: String,
-        text: String,
-    },
-    RunStart(crate::run::Start),
-    RunAdvance {
+    ) -> Vec<Coloured>;
+
+    fn complete(file: String, at: usize) -> Completion;
+
+    fn hover(file: String, at: usize) -> Option<Hover>;
+
+    /// The tables of variables and steps.
+    fn symbols(file: String) -> Tables;
+
+    fn search(file: String, text: String) -> Vec<Hit>;
+
+    fn run_start(#[serde(flatten)] wish: Start) -> Started;
+
+    fn run_advance(
         run: String,
         ms: f64,
         most_scans: Option<u32>,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         times: bool,
-    },
-    RunScan {
+    ) -> Frame;
+
+    fn run_scan(
         run: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         times: bool,
-    },
-    RunPass {
+    ) -> Frame;
+
+    fn run_pass(
         run: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         times: bool,
-    },
-    RunSet {
-        run: String,
-        signal: usize,
-        value: String,
-    },
-    RunToggle {
-        run: String,
-        signal: usize,
-    },
-    RunForce {
-        run: String,
-        signal: usize,
-        value: String,
-    },
+    ) -> Frame;
+
+    fn run_set(run: String, signal: usize, value: String) -> Frame;
+
+    fn run_toggle(run: String, signal: usize) -> Frame;
+
+    fn run_force(run: String, signal: usize, value: String) -> Frame;
+
     /// Releases one signal, or all if none is named.
-    RunRelease {
-        run: String,
-        signal: Option<usize>,
-    },
-    RunRestart {
+    fn run_release(run: String, signal: Option<usize>) -> Frame;
+
+    fn run_restart(
         run: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         warm: bool,
-    },
-    RunSeek {
-        run: String,
-        ms: f64,
-    },
-    RunLive {
+    ) -> Frame;
+
+    /// Shows the run as it was at an instant.
+    fn run_seek(run: String, ms: f64) -> Frame;
+
+    /// Shows the present again, or goes on from the shown instant.
+    fn run_live(
         run: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         here: bool,
-    },
-    RunBreaks {
-        run: String,
-        ids: Vec<String>,
-    },
-    RunSwap {
+    ) -> Frame;
+
+    fn run_breaks(run: String, ids: Vec<String>) -> Breaks;
+
+    /// Continues a run with a changed text; what would be lost is lost only by force.
+    fn run_swap(
         run: String,
         file: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         force: bool,
-    },
-    RunStop {
-        run: String,
-    },
-    RunFrame {
+    ) -> Swapped;
+
+    fn run_stop(run: String) -> ();
+
+    fn run_frame(
         run: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         full: bool,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         times: bool,
-    },
+    ) -> Frame;
+
     /// Asks again for the description of a run that its start returned.
-    RunSignals {
-        run: String,
-    },
-    RunLanes {
+    fn run_signals(run: String) -> Started;
+
+    fn run_lanes(
         run: String,
         signals: Vec<usize>,
         from_ms: f64,
         to_ms: f64,
         #[serde(default = "lane")]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         most: usize,
-    },
-    RunExport {
+    ) -> Lanes;
+
+    /// The signals as a file; all of them if none is named.
+    fn run_export(
         run: String,
         #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         signals: Vec<usize>,
-        r#as: crate::run::Form,
+        r#as: SignalsForm,
         from_ms: Option<f64>,
         to_ms: Option<f64>,
-    },
+    ) -> Text;
 }
 
 /// The default end of a range: the end of the text.

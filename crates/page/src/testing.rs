@@ -10,6 +10,7 @@ use crate::problems;
 
 /// The results of the tests of a file.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "TestAnswer"))]
 pub(crate) struct Report {
     passed: usize,
     failed: usize,
@@ -20,6 +21,7 @@ pub(crate) struct Report {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "TestResult", optional_fields))]
 struct Row {
     name: String,
     ok: bool,
@@ -27,6 +29,7 @@ struct Row {
     to: usize,
     simulated_ms: f64,
     scans: u64,
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -34,6 +37,7 @@ struct Row {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Failure {
     message: String,
     /// The place of the failed statement.
@@ -47,6 +51,7 @@ struct Failure {
 
 /// The coverage of one kind of element.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Reached {
     sort: &'static str,
     total: usize,

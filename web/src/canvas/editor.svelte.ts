@@ -175,7 +175,7 @@ class Editor {
     const { file } = this;
     const ids = [...shell.selection];
     if (!file || ids.length === 0) return '';
-    const copied = await shell.try(() => page.call<{ text: string }>({ do: 'copy', file: file.name, ids }));
+    const copied = await shell.try(() => page.call({ do: 'copy', file: file.name, ids }));
     if (copied) {
       this.#copied = copied.text;
       await navigator.clipboard?.writeText(copied.text).catch(() => undefined);

@@ -1,5 +1,6 @@
 // Tools that can be dropped into the drawing: on a link they are inserted, near an open end they
 // continue the sequence, elsewhere they stand free.
+import type { Between } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 import { editor, type Tool } from './editor.svelte';
 
@@ -7,14 +8,15 @@ const REACH = 26;
 
 export const tools: Tool[] = ['step', 'transition', 'macro', 'enclosing', 'or', 'and', 'action', 'comment'];
 
-const intoLink: ReadonlySet<Tool> = new Set(['step', 'transition', 'macro', 'enclosing']);
+const intoLink: ReadonlySet<Tool> = new Set<Between>(['step', 'transition', 'macro', 'enclosing']);
+const isInserted = (what: Tool): what is Between => intoLink.has(what);
 
 /** The id of the symbol or link that a tool would affect at a place of the plane. */
 export function targetOf(what: Tool, x: number, y: number): string | null {
   const scene = editor.scene;
   if (!scene) return null;
   const reach = REACH / Math.min(editor.view.k, 1);
-  if (!intoLink.has(what)) {
+  if (!isInserted(what)) {
     // A comment stands free unless it is dropped on a symbol.
     const over = scene.hit(x, y, reach);
     const wanted = what === 'or' || what === 'action' ? ['step'] : what === 'and' ? ['transition'] : ['step', 'transition', 'comment'];
@@ -32,11 +34,11 @@ export async function useTool(what: Tool, target: string | null, at?: [number, n
   else if (item && what === 'comment') editor.edit(item.id, 'comment');
   else if (what === 'comment') editor.note(at ?? editor.beside());
   else if (item && (what === 'or' || what === 'and')) await editor.apply({ g: 'branch', id: item.id, how: what });
-  else if (item?.part === 'link') await editor.apply({ g: 'insert', link: item.id, what });
-  else if (item && intoLink.has(what)) {
+  else if (item?.part === 'link' && isInserted(what)) await editor.apply({ g: 'insert', link: item.id, what });
+  else if (item && isInserted(what)) {
     const made = await editor.apply({ g: 'next', id: item.id });
     await turn(what, made?.select ?? []);
-  } else if (intoLink.has(what)) {
+  } else if (isInserted(what)) {
     const made = await editor.apply({ g: 'add_step', chart, ...(at ? { at } : {}) });
     await turn(what, made?.select ?? []);
   }

@@ -1,7 +1,8 @@
 // A drawing prepared for queries: symbols by id, which symbol follows which, which lies where. It
 // knows geometry only.
 import { actionOf } from '../lib/ids';
-import type { Box, Drawing, Item } from '../lib/protocol';
+import type { Box, Item } from '../lib/protocol';
+import type { Drawing } from '../lib/redrawn';
 
 export type Point = [x: number, y: number];
 

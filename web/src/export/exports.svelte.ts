@@ -13,7 +13,7 @@ class Exports {
 
   async list(): Promise<void> {
     if (this.forms.length > 0) return;
-    this.forms = await page.call<Form[]>({ do: 'forms' });
+    this.forms = await page.call({ do: 'forms' });
     this.word ||= this.forms[0]?.word ?? '';
   }
 
@@ -23,7 +23,7 @@ class Exports {
     if (!file || this.word === '') return;
     const asked = ++this.#asked;
     try {
-      const made = await page.call<Out>({ do: 'export', file: file.name, to: this.word });
+      const made = await page.call({ do: 'export', file: file.name, to: this.word });
       if (asked !== this.#asked) return;
       this.made = made;
       this.refused = '';

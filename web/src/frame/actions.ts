@@ -2,7 +2,6 @@
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page } from '../lib/page';
-import type { Merged } from '../lib/protocol';
 import { Conflict, server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
@@ -87,9 +86,9 @@ export async function takeTheirs(file: OpenFile): Promise<void> {
 /** Merges both versions if they changed different lines; otherwise the question stays. */
 export async function mergeBoth(file: OpenFile): Promise<void> {
   const outside = file.outside;
-  if (!outside || file.saved === null) return;
-  const ask = { do: 'merge', base: file.saved, mine: file.text, theirs: outside.text };
-  const merged = await shell.try(() => page.call<Merged>(ask));
+  const base = file.saved;
+  if (!outside || base === null) return;
+  const merged = await shell.try(() => page.call({ do: 'merge', base, mine: file.text, theirs: outside.text }));
   if (!merged || file.outside !== outside) return;
   const { text } = merged;
   if (text === null) {

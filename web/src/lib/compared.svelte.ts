@@ -1,11 +1,11 @@
 // A comparison for every sequence of inputs: the visible file beside another one, itself under another
 // profile, an earlier text, or what is read back from an export. A worker of its own searches; the runs
 // that tell them apart are repeated in the page.
-import type { Edge, Lane } from '../run/lanes';
+import type { Lane } from '../run/lanes';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
 import { Local, page } from './page';
-import type { ComparedReport, Frame, Look, ProofScan, Started } from './protocol';
+import type { ComparedReport, Look, ProofScan } from './protocol';
 
 /** Limits of the search one after the other, in pairs of states, and its longest time in ms. */
 const ROUNDS: readonly number[] = [1_000, 16_000, 64_000, 256_000, 1_000_000];
@@ -66,13 +66,13 @@ class Comparison {
     this.states = 0;
     const late = window.setTimeout(() => mine() && this.stop(), TIME);
     try {
-      const names: string[] = [];
-      for (const [n, side] of sides.entries()) names.push((await this.#worker.call<Look>({ do: 'open', file: `${n}/${side.name}`, text: side.text })).file);
-      const profiles = sides.map((s) => s.profile);
+      const opened = async (n: number, { name, text }: Side) => (await this.#worker.call({ do: 'open', file: `${n}/${name}`, text })).file;
+      const names: [string, string] = [await opened(0, sides[0]), await opened(1, sides[1])];
+      const profiles: [string | null, string | null] = [sides[0].profile, sides[1].profile];
       for (const states of ROUNDS) {
         if (!mine()) return;
         this.states = states;
-        const answer = await this.#worker.call<ComparedReport>({ do: 'compare', files: names, profiles, situations, states, mib: MEMORY });
+        const answer = await this.#worker.call({ do: 'compare', files: names, profiles, situations, states, mib: MEMORY });
         if (!mine()) return;
         this.answer = answer;
         if (!answer.more) break;
@@ -113,8 +113,8 @@ class Comparison {
     // Names of its own: a comparison that was ended meanwhile may still have to close its files.
     const folder = `\u0000compared/${this.#turn}`;
     for (const [n, side] of sides.entries()) {
-      const look = await page.call<Look>({ do: 'open', file: `${folder}/${n}/${side.name}`, text: side.text });
-      const started = await page.call<Started>({ do: 'run_start', file: look.file, run: look.file, plant: 'none', profile: side.profile, moves: runs[n] });
+      const look = await page.call({ do: 'open', file: `${folder}/${n}/${side.name}`, text: side.text });
+      const started = await page.call({ do: 'run_start', file: look.file, run: look.file, plant: 'none', profile: side.profile, moves: runs[n] });
       const run = new Run(started, page, false);
       told.push({ side, look, run, lanes: await lanesOf(run) });
     }
@@ -129,8 +129,8 @@ class Comparison {
     const last = (this.answer?.scans ?? 1) - 1;
     const at = Math.max(0, Math.min(scan, last));
     for (const { run } of this.told ?? []) {
-      const message = at === last ? { do: 'run_live' } : { do: 'run_seek', ms: at * run.started.period_ms };
-      run.take(await page.call<Frame>({ ...message, run: run.name }));
+      const of = run.name;
+      run.take(await (at === last ? page.call({ do: 'run_live', run: of }) : page.call({ do: 'run_seek', run: of, ms: at * run.started.period_ms })));
     }
     this.scan = at;
   }
@@ -173,8 +173,7 @@ async function lanesOf(run: Run): Promise<Lane[]> {
   const shown = signals.map((s, lane) => ({ name: s.name, lane, type: s.type, step: false, role: s.role })).filter((s) => s.role === 'input' || s.role === 'output');
   const active = steps.map((s, i) => ({ name: s.activity, lane: signals.length + i, type: 'bool' as const, step: true, inner: s.inner })).filter((s) => !s.inner);
   const all = [...shown, ...active];
-  const message = { do: 'run_lanes', run: run.name, signals: all.map((s) => s.lane), from_ms: 0, to_ms: run.end + run.started.period_ms, most: 4000 };
-  const found = await run.answers.call<{ lanes: Edge[][] }>(message);
+  const found = await run.answers.call({ do: 'run_lanes', run: run.name, signals: all.map((s) => s.lane), from_ms: 0, to_ms: run.end + run.started.period_ms, most: 4000 });
   return all.map(({ name, type, step }, i) => ({ name, type, step, edges: found.lanes[i] ?? [] }));
 }
 

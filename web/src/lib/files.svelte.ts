@@ -4,8 +4,8 @@ import { ChangeSet, type Text } from '@codemirror/state';
 import { local } from './local';
 import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
-import type { Drawing, Edited, Gesture, Look, Splice } from './protocol';
-import { Redraws } from './redrawn';
+import type { Edited, Gesture, Look, Splice } from './protocol';
+import { Redraws, type Drawing } from './redrawn';
 import { server } from './server';
 
 /** The origin of a change; a listener that made the change itself can ignore it. */
@@ -97,7 +97,7 @@ export class OpenFile {
   /** Asks for the problems again, in the language that was chosen meanwhile. */
   again(): Promise<void> {
     return this.#turn(async () => {
-      this.look = await page.call<Look>({ do: 'look', file: this.name });
+      this.look = await page.call({ do: 'look', file: this.name });
     });
   }
 
@@ -143,10 +143,8 @@ export class OpenFile {
     const key = `${chart}\n${look}\n${prefs.pages}`;
     const known = this.#drawings.get(key);
     if (known && known.version === this.look.version) return known.drawing;
-    const message: Message = { do: 'drawing', file: this.name, chart, look, actions: true };
-    if (prefs.pages) message.pages = 'pl7';
     const redraws = known?.redraws ?? new Redraws();
-    const drawing = redraws.ask(message);
+    const drawing = redraws.ask({ file: this.name, chart, look, actions: true, pages: prefs.pages ? 'pl7' : null });
     this.#drawings.set(key, { version: this.look.version, drawing, redraws });
     return drawing;
   }
@@ -170,8 +168,8 @@ export class OpenFile {
     return done;
   }
 
-  async #change(message: Message, origin: Origin): Promise<Edited> {
-    const edited = await page.call<Edited>(message);
+  async #change(message: Message<'edit' | 'undo' | 'redo' | 'format'>, origin: Origin): Promise<Edited> {
+    const edited = await page.call(message);
     let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
     for (const mine of this.#typed) {
       const after = theirs.map(mine.changes, true);
@@ -190,7 +188,7 @@ export class OpenFile {
     for (let next = this.#typed.shift(); next; next = this.#typed.shift()) {
       const splices = asSplices(next.changes);
       if (splices.length === 0) continue;
-      this.look = await page.call<Look>({ do: 'splice', file: this.name, splices, unit: next.unit });
+      this.look = await page.call({ do: 'splice', file: this.name, splices, unit: next.unit });
     }
   }
 
@@ -214,8 +212,8 @@ class Files {
       this.current = known;
       return known;
     }
-    const look = await page.call<Look>({ do: 'open', file: name, text });
-    if (look.imported) text = (await page.call<{ text: string }>({ do: 'text', file: look.file })).text;
+    const look = await page.call({ do: 'open', file: name, text });
+    if (look.imported) text = (await page.call({ do: 'text', file: look.file })).text;
     const file = new OpenFile(look, text);
     file.saved = look.imported ? null : saved;
     file.tag = look.imported ? null : tag;

@@ -3,15 +3,27 @@
 import { untrack } from 'svelte';
 
 import { prefs } from './prefs.svelte';
+import type { Answers, Frame, Requests } from './protocol';
 
-export type Message = { do: string } & Record<string, unknown>;
+/** The name of a message. */
+export type Name = keyof Requests;
+
+/** A message with this name, or with one of these names. */
+export type Message<N extends Name = Name> = { [K in N]: { do: K } & Requests[K] }[N];
+
+/** The messages to a run. */
+export type RunName = Extract<Name, `run_${string}`>;
+
+/** Without a run's name: those that a frame answers. */
+export type Move = { [K in RunName]: Answers[K] extends Frame ? { do: K } & Omit<Requests[K], 'run'> : never }[RunName];
 
 /** A refusal: a sentence for the user. */
 export class Refused extends Error {}
 
-/** A receiver of messages: the page's own worker, or the server. */
-export interface Answers {
-  call<T>(message: Message): Promise<T>;
+/** A receiver of messages to runs: the page's own worker, or the server. The type of the answer follows from the
+ * name of the message. */
+export interface Door {
+  call<N extends RunName>(message: { do: N } & Message<N>): Promise<Answers[N]>;
 }
 
 interface Waiting {
@@ -27,24 +39,24 @@ export function opened<T>(answer: string): T {
 }
 
 /** A worker with the wasm; it starts with the first message. */
-export class Local implements Answers {
+export class Local implements Door {
   #worker: Worker | undefined;
   #waiting: Waiting[] = [];
   /** The language that the worker was told. */
   #language = 'en';
 
-  call<T>(message: Message): Promise<T> {
+  call<N extends Name>(message: { do: N } & Message<N>): Promise<Answers[N]> {
     this.#worker ??= this.#start();
     const language = untrack(() => prefs.language);
     if (this.#language !== language) {
       this.#language = language;
       void this.#send({ do: 'speak', language });
     }
-    return this.#send<T>(message);
+    return this.#send(message);
   }
 
-  #send<T>(message: Message): Promise<T> {
-    const answer = new Promise<T>((resolve, reject) => {
+  #send<N extends Name>(message: { do: N } & Message<N>): Promise<Answers[N]> {
+    const answer = new Promise<Answers[N]>((resolve, reject) => {
       this.#waiting.push({ resolve: resolve as (value: unknown) => void, reject });
     });
     this.#worker?.postMessage(JSON.stringify(message));
@@ -76,4 +88,4 @@ export class Local implements Answers {
   }
 }
 
-export const page: Answers = new Local();
+export const page = new Local();

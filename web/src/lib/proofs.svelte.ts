@@ -130,7 +130,7 @@ class Proofs {
       for (const states of rounds) {
         if (from?.hash === hash && states < from.states) continue;
         this.work = { file: file.name, hash, whole, states };
-        const report = await this.#worker.call<ProofReport>({ do: 'prove', file: FILE, states, mib: MEMORY });
+        const report = await this.#worker.call({ do: 'prove', file: FILE, states, mib: MEMORY });
         if (!mine()) return;
         this.#put(file.name, { ...report, hash, states, whole });
         if (report.refused || !report.rows.some((r) => r.verdict === 'open')) break;

@@ -1,39 +1,44 @@
-// The messages between the page and the Rust crate `g7-page`, which answers them in the page's
-// worker (as wasm) and in the server. Places in texts are UTF-16 code units; geometry is in px at
-// 100 % zoom.
+// The messages between the page and the Rust crate `g7-page`, which answers them in the page's worker (as wasm)
+// and in the server. Made by `make types` of the table in `crates/page/src/request.rs`; a test compares it.
+// Places in texts are UTF-16 code units; geometry is in px at 100 % zoom.
 
-export type Box = [x: number, y: number, w: number, h: number];
+/** The kinds of claims. */
+export type About = 'step' | 'transition' | 'action' | 'variable' | 'deadlock' | 'conflict' | 'chart' | 'property';
 
-export interface Splice {
-  from: number;
-  to: number;
-  insert: string;
-}
+/** A test with the change that adds it. */
+export type Added = { title: string; splices: Array<Splice> };
 
-export interface Fix {
-  title: string;
-  splices: Splice[];
-}
+/** Kinds of alignment. */
+export type Alignment = 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y';
 
-export interface Problem {
-  code: string;
-  title: string;
-  severity: 'error' | 'warning';
-  what: string;
-  help?: string;
-  from: number;
-  to: number;
-  line: number;
-  column: number;
-  related: { from: number; to: number; what: string }[];
-  /** The ids of the symbols that it marks. */
-  items: string[];
-  fixes: Fix[];
-}
+/** The text before the last change; null if there was none. */
+export type Before = { text: string | null };
 
+/** A part that is inserted into a link; the step or transition that alternation needs comes with
+ * it. */
+export type Between = 'step' | 'transition' | 'macro' | 'enclosing';
+
+export type Binding = { element: string; attribute: string };
+
+/** The greatest number of passes in a scan. */
+export type Bound = { usual: number; set?: number };
+
+/** A rectangle: its left and upper edge, width, height. */
+export type Box = [number, number, number, number];
+
+/** Kinds of branching. */
+export type Branching = 'or' | 'and';
+
+/** The breakpoints of a run. */
+export type Breaks = {
+  /** The ids of their symbols. */
+  ids: Array<string>;
+};
+
+/** Kinds of chart. */
 export type ChartKind = 'chart' | 'expansion' | 'task';
 
-export interface ChartRow {
+export type ChartRow = {
   name: string;
   kind: ChartKind;
   comment?: string;
@@ -42,234 +47,584 @@ export interface ChartRow {
   steps: number;
   transitions: number;
   /** The chart and the step that this chart is the expansion of, or that enclose it. */
-  of?: [chart: string, step: string];
-}
+  of?: [string, string];
+};
 
-export interface TestRow {
-  name: string;
-  from: number;
-  to: number;
-  plant?: string;
-}
+/** The answer. */
+export type ComparedReport = {
+  is: Outcome;
+  /** The reason: the proof, the first difference, what is in the way, why they cannot be compared. */
+  reason: [string, string, string];
+  /** The way on; empty if none is known. */
+  help: [string, string, string];
+  /** More states or time may decide it. */
+  more: boolean;
+  /** There are assumptions, which the inputs of both keep. */
+  assumed: boolean;
+  /** The file with errors. */
+  side?: number;
+  /** Pairs of states. */
+  states: number;
+  /** Scans of both: all that were made, or those that do not tell them apart. */
+  scans: number;
+  /** The shortest run that tells them apart, for each of them. */
+  runs?: [Array<ProofScan>, Array<ProofScan>];
+};
 
-/** A switch of the profile: its two words, the profile's own choice, and the choice of the file if
- * any. */
-export interface SwitchRow {
-  words: [string, string];
-  usual: string;
-  set?: string;
-}
+export type Completion = { label: string; kind: string; detail: string; insert: string };
 
-/** The overview of a file. */
-export interface Look {
+/** The possible words, and the place at which the word begins. */
+export type Completions = { from: number; items: Array<Completion> };
+
+/** A change of the text that a refuted claim offers. */
+export type Cure = {
+  sort: CureSort;
+  /** The texts that its title names. */
+  with: Array<string>;
+  splices: Array<Splice>;
+};
+
+/** The kinds of cures. */
+export type CureSort = 'exclusive' | 'parallel' | 'priority' | 'assume';
+
+/** The file after a change, and the change itself, which the text view makes too. */
+export type Edited = {
+  splices: Array<Splice>;
+  select: Array<ItemId>;
+  begin?: ItemId;
+  told?: Array<string>;
   file: string;
   version: number;
   length: number;
   hash: string;
-  /** True if the text has no syntax errors. */
   clean: boolean;
-  imported?: boolean;
+  imported: boolean;
   can_undo: boolean;
   can_redo: boolean;
-  problems: Problem[];
-  charts: ChartRow[];
+  problems: Array<Problem>;
+  charts: Array<ChartRow>;
   profile: string;
-  switches: SwitchRow[];
-  /** The greatest number of passes in a scan. */
-  bound: { usual: number; set?: number };
+  switches: Array<SwitchRow>;
+  bound: Bound;
   scan_ms: number;
-  plants: string[];
-  tests: TestRow[];
-}
+  plants: Array<string>;
+  tests: Array<TestRow>;
+};
 
-/** The overview after a change that the page did not type itself. */
-export interface Edited extends Look {
-  splices: Splice[];
-  select?: string[];
-  /** The symbol whose text is to be edited next. */
-  begin?: string;
-  /** Sentences for the user about the change. */
-  told?: string[];
-}
+/** A page of the book. */
+export type Explained = { markdown: string };
 
-export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
+export type Failure = {
+  message: string;
+  /** The place of the failed statement. */
+  from: number;
+  to: number;
+  time_ms: number;
+  got: Array<[string, string]>;
+  situation: string;
+  chronogram: string;
+};
 
-/** A part of a drawing that can be pointed at. */
-export interface Item {
-  id: string;
-  part: Part;
-  /** The bounding box, texts included. */
-  area: Box;
+/** A change that fixes a problem. */
+export type Fix = { title: string; splices: Array<Splice> };
+
+/** A form in which a chart can be exported. */
+export type Form = {
+  word: string;
+  title: string;
+  kind: FormSort;
+  /** It is read back as a chart. */
+  read: boolean;
+};
+
+/** The kinds of forms. */
+export type FormSort = 'chart' | 'code' | 'picture';
+
+/** A frame. Steps, transitions, signals and bindings are numbered as in the description of the run. */
+export type Frame = {
+  run: string;
+  now_ms: number;
+  scans: number;
+  passes: number;
+  full: boolean;
+  /** Steps that became active. */
+  on: Array<number>;
+  /** Steps that became inactive. */
+  off: Array<number>;
+  /** The time since activation of each active step, in ms. */
+  times?: { [key in number]: number };
+  /** Enabled transitions: 0 not enabled, 1 enabled, 2 enabled and the receptivity is true. */
+  enabled: Array<[number, 0 | 1 | 2]>;
+  cleared: Array<number>;
+  values: Array<[number, string, number]>;
+  forced: Array<[number, boolean]>;
+  view: Array<[number, Show]>;
+  /** True between two passes of a scan. */
+  within?: boolean;
+  /** True if the frame shows the present and not an earlier scan. */
+  live: boolean;
+  /** True if the run could not keep up with the requested time. */
+  late?: boolean;
+  stopped?: Stopped;
+  halt?: Halted;
+  notes?: Array<string>;
+};
+
+/** One gesture of the editor. */
+export type Gesture =
+  | {
+    g: 'add_step';
+    /** The chart. */
+    chart: string;
+    /** Its place, in pixels of the drawing. */
+    at?: [number, number] | null;
+    /** Its kind; a plain step if absent. */
+    kind?: StepKind | null;
+  }
+  | {
+    g: 'next';
+    /** The step or transition. */
+    id: ItemId;
+  }
+  | {
+    g: 'before';
+    /** The step or transition. */
+    id: ItemId;
+  }
+  | {
+    g: 'connect';
+    /** The start of the link. */
+    from: ItemId;
+    /** The end of the link. */
+    to: ItemId;
+  }
+  | {
+    g: 'insert';
+    /** The link. */
+    link: ItemId;
+    /** The part to insert. */
+    what?: Between;
+  }
+  | {
+    g: 'branch';
+    /** The step or transition at which it begins. */
+    id: ItemId;
+    /** A selection (or) or simultaneous sequences (and). */
+    how: Branching;
+  }
+  | {
+    g: 'converge';
+    /** The ends of the branches. */
+    ids: Array<ItemId>;
+    /** The end of a selection (or) or of simultaneous sequences (and). */
+    how: Branching;
+    /** The step they lead to; a new one if absent. */
+    to?: ItemId | null;
+  }
+  | {
+    g: 'jump';
+    /** The step or transition at which it starts. */
+    id: ItemId;
+    /** The step to which it leads. */
+    to: ItemId;
+  }
+  | {
+    g: 'parallel';
+    /** The steps and transitions of the sequence. */
+    ids: Array<ItemId>;
+  }
+  | {
+    g: 'delete';
+    /** The parts. */
+    ids: Array<ItemId>;
+    /** Join what was before the parts to what was after them. */
+    heal?: boolean;
+  }
+  | {
+    g: 'rename';
+    /** The step or chart. */
+    id?: ItemId | null;
+    /** A variable instead, as `Chart.name` if it belongs to a chart. */
+    name?: string | null;
+    /** The new name. */
+    to: string;
+  }
+  | {
+    g: 'receptivity';
+    /** The transition. */
+    id: ItemId;
+    /** The receptivity as typed. */
+    text: string;
+  }
+  | {
+    g: 'action';
+    /** The step, or one of its actions. */
+    id: ItemId;
+    /** The number of the action, from 0; a new action if absent. */
+    index?: number | null;
+    /** The action as typed; empty to delete it. */
+    text: string;
+  }
+  | {
+    g: 'comment';
+    /** The commented part, or the comment of the layout section. */
+    id: ItemId;
+    /** The text without quotes. Empty removes the comment. */
+    text: string;
+  }
+  | {
+    g: 'comment_at';
+    /** The chart. */
+    chart: string;
+    /** The text without quotes. */
+    text: string;
+    /** Its upper left corner, in pixels. */
+    at: [number, number];
+  }
+  | {
+    g: 'label';
+    /** The transition. */
+    id: ItemId;
+    /** The label; empty for none. */
+    text: string;
+  }
+  | {
+    g: 'priority';
+    /** The transition. */
+    id: ItemId;
+    /** The priority, 1 being the first; absent for none. */
+    n?: number | null;
+  }
+  | {
+    g: 'ends';
+    /** The transition. */
+    id: ItemId;
+    /** The names of the preceding steps; unchanged if absent. */
+    before?: Array<string> | null;
+    /** The names of the succeeding steps; unchanged if absent. */
+    after?: Array<string> | null;
+  }
+  | {
+    g: 'initial';
+    /** The step. */
+    id: ItemId;
+    /** True if the step is initial. */
+    on: boolean;
+  }
+  | {
+    g: 'kind';
+    /** The step. */
+    id: ItemId;
+    /** The kind. */
+    kind: StepKind;
+  }
+  | {
+    g: 'move';
+    /** Steps and transitions. */
+    ids: Array<ItemId>;
+    /** Distance to the right, in pixels. */
+    dx: number;
+    /** Distance downward, in pixels. */
+    dy: number;
+  }
+  | {
+    g: 'align';
+    /** Steps and transitions. */
+    ids: Array<ItemId>;
+    /** The kind of alignment. */
+    how: Alignment;
+  }
+  | {
+    g: 'tidy';
+    /** The chart. */
+    chart: string;
+  }
+  | {
+    g: 'paste';
+    /** The chart. */
+    chart: string;
+    /** The text. */
+    text: string;
+    /** The place of its first step, in pixels. */
+    at?: [number, number] | null;
+  }
+  | {
+    g: 'cut';
+    /** The parts. */
+    ids: Array<ItemId>;
+  }
+  | {
+    g: 'add_chart';
+    /** The kind of chart. */
+    kind?: ChartKind;
+    /** Its name; a new one is found if absent. */
+    name?: string | null;
+  }
+  | {
+    g: 'delete_chart';
+    /** The chart. */
+    chart: string;
+  }
+  | {
+    g: 'macro';
+    /** Its steps and transitions. */
+    ids: Array<ItemId>;
+  }
+  | {
+    g: 'variable';
+    /** The variable to change, `Chart.name` if it belongs to a chart; a new one if absent. */
+    name?: string | null;
+    /** The new contents of the row. */
+    row: VariableEdit;
+  }
+  | {
+    g: 'delete_variable';
+    /** Its name, `Chart.name` if it belongs to a chart. */
+    name: string;
+  }
+  | {
+    g: 'profile';
+    /** Its name. */
+    name: string;
+  }
+  | {
+    g: 'switch';
+    /** The word of the switch, for instance `one-pass`. */
+    name: string;
+    /** True to write the switch, false to leave it to the profile. */
+    on: boolean;
+  }
+  | {
+    g: 'bound';
+    /** The number; the profile decides if absent. */
+    n?: number | null;
+  }
+  | {
+    g: 'scan';
+    /** The time in milliseconds. */
+    ms: number;
+  };
+
+/** The fault that ended a run, with its place in the text from which the run was started. */
+export type Halted = { what: string; ids: Array<string>; from?: number; to?: number };
+
+/** An explanation of a piece of the text. */
+export type Hover = { from: number; to: number; markdown: string };
+
+/** A symbol with its drawing. */
+export type Item = {
   /** The SVG of the symbol. */
   svg: string;
   /** Path data for zoomed-out views. */
   far: string;
+  id: string;
+  part: Part;
+  area: Box;
   from: number;
   to: number;
   square?: Box;
   bar?: Box;
   text?: Box;
+  /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
+  at?: [number, number];
   name?: string;
   label?: string;
   comment?: string;
-  /** The chart that a macro-step opens. */
-  macro?: string;
-  step?: 'plain' | 'entry' | 'exit' | 'macro' | 'enclosing';
-  encloses?: string[];
-  initial?: boolean;
   /** The receptivity or the action as typed. */
   source?: string;
   priority?: number;
-  /** The names of the preceding and succeeding steps of a transition. */
-  steps?: [before: string[], after: string[]];
-  /** The two ends of a link. */
+  /** The names of the preceding and the succeeding steps of a transition. */
+  steps?: [Array<string>, Array<string>];
+  step?: StepKind;
+  macro?: string;
+  encloses?: Array<string>;
+  initial?: boolean;
   ends?: [string, string];
-  /** The anchor. */
-  at?: [number, number];
-}
+};
 
-export interface Drawing {
-  chart: string;
-  kind: ChartKind;
-  /** True if this is an earlier drawing, because the text has syntax errors. */
-  stale: boolean;
-  area: Box;
-  items: Item[];
-}
+/** The id of a part of a chart. */
+export type ItemId = string;
 
-/** A drawing as its difference from the one with the number `since`, if that is given. */
-export interface Redrawn extends Omit<Drawing, 'items'> {
-  number?: number;
-  since?: number;
-  /** A number: the symbol with this number there, but for its places in the text. An object with `as`: a symbol
-   * that is drawn as that one. */
-  items: (number | (Item & { as?: number }))[];
-  /** The first and the last place in the text of each symbol that is a number. */
-  places?: number[];
-}
+/** The lanes of a chronogram. */
+export type Lanes = {
+  start_ms: number;
+  end_ms: number;
+  /** For each signal its edges: instant (ms), number, value as text. */
+  lanes: Array<Array<[number, number, string]>>;
+};
 
-/** Two changes of one text, merged; no text if they contradict each other. */
-export interface Merged {
+export type LogicForm = {
+  tongue: Tongue;
+  /** Null if the language cannot express it. */
   text: string | null;
+  /** Ladder has one. */
+  picture?: string;
+};
+
+/** The part of a symbol that a piece of logic is. */
+export type LogicPart = 'receptivity' | 'condition' | 'event' | 'body';
+
+/** A piece of logic: the part of the symbol that it is, the number of the action in its step, and its
+ * text in each language. */
+export type LogicPiece = { part: LogicPart; index?: number; forms: Array<LogicForm> };
+
+/** The overview of a file. */
+export type Look = {
+  file: string;
+  version: number;
+  length: number;
+  hash: string;
+  clean: boolean;
+  imported: boolean;
+  can_undo: boolean;
+  can_redo: boolean;
+  problems: Array<Problem>;
+  charts: Array<ChartRow>;
+  profile: string;
+  switches: Array<SwitchRow>;
+  bound: Bound;
+  scan_ms: number;
+  plants: Array<string>;
+  tests: Array<TestRow>;
+};
+
+/** The lines of a text, from 0, that belong to a symbol. */
+export type Mark = { id: string; lines: Array<number> };
+
+/** The result of a merge. */
+export type Merged = {
+  /** The text with both changes; absent if they contradict each other. */
+  text: string | null;
+  /** The number of places at which they do. */
   conflicts: number;
-}
+};
 
-export interface DrawingLook {
-  look?: 'iec60848' | 'sfc';
-  pages?: 'pl7';
-  actions?: boolean;
-}
+/** An exported chart. */
+export type Out = {
+  files: Array<OutFile>;
+  /** Problems: parts of the chart that the export does not contain; places are those of the
+   * chart. */
+  problems: Array<Problem>;
+  /** True if the export has another meaning than the chart. */
+  lossy: boolean;
+};
 
-export interface Completion {
-  label: string;
-  kind: string;
-  detail?: string;
-  insert?: string;
-}
-
-export interface Completions {
-  from: number;
-  items: Completion[];
-}
-
-export interface Hover {
-  from: number;
-  to: number;
-  markdown: string;
-}
-
-export interface VariableRow {
+/** One exported file. */
+export type OutFile = {
   name: string;
-  class: 'input' | 'output' | 'var' | 'const';
-  type: string;
-  init?: string;
-  address?: string;
-  inverted?: boolean;
-  retain?: boolean;
-  safe?: string;
-  comment?: string;
-  chart?: string;
-  from: number;
-  to: number;
-  uses?: number;
-}
+  text: string;
+  /** The lines that belong to each symbol. */
+  marks: Array<Mark>;
+};
 
-export interface StepSymbol {
-  id: string;
-  name: string;
-  chart: string;
-  comment?: string;
-  from: number;
-  to: number;
-}
+/** The outcomes of a comparison. */
+export type Outcome = 'equal' | 'apart' | 'open' | 'unlike' | 'errors';
 
-export interface Symbols {
-  stale?: boolean;
-  variables: VariableRow[];
-  steps: StepSymbol[];
-}
+/** The pages on which a chart is drawn. */
+export type Pages = 'pl7';
 
-export interface SearchHit {
+/** The kinds of symbols. */
+export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
+
+/** One problem. */
+export type Problem = {
+  code: string;
+  title: string;
+  severity: Severity;
+  what: string;
+  help?: string;
   from: number;
   to: number;
   line: number;
-  text: string;
-  chart?: string;
-  /** The symbol that shows it. */
+  column: number;
+  related: Array<Related>;
+  /** The ids of the symbols that it marks. */
+  items: Array<string>;
+  fixes: Array<Fix>;
+};
+
+/** All answers to the questions of a file. */
+export type ProofReport = {
+  /** The fingerprint of the text that was asked, as in the overview of a file. */
+  hash: string;
+  /** True where errors stand in the way of all questions. */
+  refused: boolean;
+  rows: Array<ProofRow>;
+};
+
+/** The answer to one question. */
+export type ProofRow = {
+  /** The number of the question. */
+  number: number;
+  claim: [string, string, string];
+  /** True if the author asks it in the file. */
+  own: boolean;
+  /** The kind of claim, for the panel. */
+  about: About;
+  verdict: Verdict;
+  reason: [string, string, string];
+  /** The way out; empty if none is known. */
+  help: [string, string, string];
+  /** The place of what is asked about. */
+  from: number;
+  to: number;
+  line: number;
+  /** The symbol that is asked about. */
   id?: string;
-}
+  /** The symbols that take part in what the last scan of the run shows. */
+  blame?: Array<string>;
+  /** The run that shows the answer. */
+  run?: Array<ProofScan>;
+  /** The ways in which its plant ticked, for each scan; empty unless it draws random numbers. */
+  chance?: Array<number>;
+};
 
-/** A gesture; the ids name symbols of one chart. */
-export type Gesture =
-  | { g: 'add_step'; chart: string; at?: [number, number]; kind?: string }
-  | { g: 'next'; id: string }
-  | { g: 'before'; id: string }
-  | { g: 'connect'; from: string; to: string }
-  | { g: 'insert'; link: string; what: string }
-  | { g: 'branch'; id: string; how: 'or' | 'and' }
-  | { g: 'converge'; ids: string[]; how: 'or' | 'and'; to?: string }
-  | { g: 'jump'; id: string; to: string }
-  | { g: 'parallel'; ids: string[] }
-  | { g: 'delete'; ids: string[]; heal: boolean }
-  | { g: 'rename'; id?: string; name?: string; to: string }
-  | { g: 'receptivity'; id: string; text: string }
-  | { g: 'action'; id: string; index?: number; text: string }
-  | { g: 'comment'; id: string; text: string }
-  | { g: 'comment_at'; chart: string; text: string; at: [number, number] }
-  | { g: 'ends'; id: string; before?: string[]; after?: string[] }
-  | { g: 'label'; id: string; text: string }
-  | { g: 'priority'; id: string; n: number | null }
-  | { g: 'initial'; id: string; on: boolean }
-  | { g: 'kind'; id: string; kind: 'plain' | 'macro' | 'enclosing' | 'entry' | 'exit' }
-  | { g: 'move'; ids: string[]; dx: number; dy: number }
-  | { g: 'align'; ids: string[]; how: 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y' }
-  | { g: 'tidy'; chart: string }
-  | { g: 'paste'; chart: string; text: string; at?: [number, number] }
-  | { g: 'cut'; ids: string[] }
-  | { g: 'add_chart'; kind: ChartKind; name?: string }
-  | { g: 'delete_chart'; chart: string }
-  | { g: 'macro'; ids: string[] }
-  | { g: 'variable'; name: string | null; row: Partial<VariableRow> }
-  | { g: 'delete_variable'; name: string }
-  | { g: 'profile'; name: string }
-  | { g: 'switch'; name: string; on: boolean }
-  | { g: 'bound'; n: number | null }
-  | { g: 'scan'; ms: number };
+/** A scan of a run. */
+export type ProofScan = {
+  /** The time since the scan before, ns. */
+  wait_ns: number;
+  /** The input words that are not as in the scan before (in the first scan: not 0): number and value.
+   * The value is a text, because numbers of the page have 53 bits. */
+  set: Array<[number, string]>;
+};
 
-export type SignalRole = 'input' | 'output' | 'variable' | 'plant';
-export type SignalType = 'bool' | 'int' | 'real' | 'time' | 'text';
+/** The ways on from a refuted claim. */
+export type ProofWays = {
+  cures: Array<Cure>;
+  /** The change that adds a test to the file, which fails as long as the claim does. */
+  test?: Added;
+  /** Why there is no test. */
+  untested?: [string, string, string];
+};
 
-export interface SignalRow {
-  name: string;
-  role: SignalRole;
-  type: SignalType;
-  declared: string;
-  comment?: string;
-  address?: string;
-  driven: boolean;
-}
+/** The coverage of one kind of element. */
+export type Reached = {
+  sort: string;
+  total: number;
+  reached: number;
+  /** The ids of the symbols that no test reached. */
+  missed: Array<string>;
+};
 
-export interface RunStep {
+/** An answer: a whole drawing, or its difference from another. */
+export type Redrawn = {
+  /** The number of this drawing; none if it is not kept. */
+  number?: number;
+  /** The number of the drawing to which `items` refer. */
+  since?: number;
+  items: Array<Sent>;
+  /** The first and the last place in the text of each symbol that is the same. */
+  places?: Array<number>;
+  chart: string;
+  kind: ChartKind;
+  /** True if the drawing shows an earlier text, because the present one has syntax errors. */
+  stale: boolean;
+  area: Box;
+};
+
+export type Related = { from: number; to: number; what: string };
+
+export type RunStep = {
   id: string;
   name: string;
   chart: string;
@@ -277,176 +632,380 @@ export interface RunStep {
   activity: string;
   macro: boolean;
   inner: boolean;
-}
+};
 
-export interface Started {
+/** A result of a search. */
+export type SearchHit = { from: number; to: number; line: number; text: string; id?: string; chart?: string };
+
+export type Sent =
+  | number
+  | {
+    as: number;
+    id: string;
+    part: Part;
+    area: Box;
+    from: number;
+    to: number;
+    square?: Box;
+    bar?: Box;
+    text?: Box;
+    /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
+    at?: [number, number];
+    name?: string;
+    label?: string;
+    comment?: string;
+    /** The receptivity or the action as typed. */
+    source?: string;
+    priority?: number;
+    /** The names of the preceding and the succeeding steps of a transition. */
+    steps?: [Array<string>, Array<string>];
+    step?: StepKind;
+    macro?: string;
+    encloses?: Array<string>;
+    initial?: boolean;
+    ends?: [string, string];
+  }
+  | Item;
+
+/** How grave a problem is. */
+export type Severity = 'error' | 'warning';
+
+/** A value of the plant's picture. */
+export type Show = boolean | number | string;
+
+/** The part that a signal plays. */
+export type SignalRole = 'input' | 'output' | 'variable' | 'plant';
+
+export type SignalRow = {
+  name: string;
+  role: SignalRole;
+  type: SignalType;
+  declared: string;
+  comment?: string;
+  address?: string;
+  driven: boolean;
+};
+
+/** The kinds of values. */
+export type SignalType = 'bool' | 'int' | 'real' | 'time' | 'text';
+
+/** The format of a file of signals. */
+export type SignalsForm = 'csv' | 'vcd' | 'svg';
+
+/** A replacement in a text; places are in code units. */
+export type Splice = { from: number; to: number; insert: string };
+
+/** The standard whose symbols are drawn. */
+export type Standard = 'iec60848' | 'sfc';
+
+/** The description of a run: the names of the numbers in its frames. */
+export type Started = {
   run: string;
   file: string;
   profile: string;
   period_ms: number;
-  signals: SignalRow[];
-  steps: RunStep[];
-  transitions: { id: string }[];
+  signals: Array<SignalRow>;
+  steps: Array<RunStep>;
+  transitions: Array<TransitionRow>;
   plant?: string;
-  view?: { file: string; svg?: string; bindings: { element: string; attribute: string }[] };
+  view?: View;
   /** The fingerprint of the text that runs, as in the overview of a file. */
   hash: string;
   /** The ids of the breakpoints. */
-  breaks: string[];
+  breaks: Array<string>;
   frame: Frame;
-}
+};
 
-/** What changed in a run since its last frame; a full frame contains everything. */
-export interface Frame {
-  run: string;
-  now_ms: number;
-  scans: number;
-  passes: number;
-  full: boolean;
-  on: number[];
-  off: number[];
-  times?: Record<string, number>;
-  /** 0 not enabled, 1 enabled, 2 enabled and the receptivity is true. */
-  enabled: [number, 0 | 1 | 2][];
-  cleared: number[];
-  values: [number, string, number][];
-  forced: [number, boolean][];
-  view: [number, boolean | number | string][];
-  within?: boolean;
-  late?: boolean;
-  live?: boolean;
-  stopped?: { id: string };
-  halt?: { what: string; ids: string[]; from?: number; to?: number };
-  notes?: string[];
-}
+/** Kinds of step. */
+export type StepKind = 'plain' | 'macro' | 'enclosing' | 'entry' | 'exit';
 
-export interface Lane {
-  signal: number;
-  edges: [ms: number, value: number, show: string][];
-}
+export type StepSymbol = {
+  id: string;
+  name: string;
+  chart: string;
+  comment: string;
+  initial: boolean;
+  from: number;
+  to: number;
+};
 
-export interface TestResult {
+/** The breakpoint at which a run stopped. */
+export type Stopped = { id: string };
+
+/** A style sheet. */
+export type Style = { css: string };
+
+/** The answer to an on-line change. */
+export type Swapped = Started | { lost: Array<string> };
+
+/** A switch of the profile. */
+export type SwitchRow = {
+  /** The words for its two positions. */
+  words: [string, string];
+  /** The position that the profile implies. */
+  usual: string;
+  /** The position that the file sets beside the profile, if any. */
+  set?: string;
+};
+
+/** The tables of variables and steps. */
+export type Symbols = { stale: boolean; variables: Array<VariableRow>; steps: Array<StepSymbol> };
+
+/** The results of the tests of a file. */
+export type TestAnswer = {
+  passed: number;
+  failed: number;
+  tests: Array<TestResult>;
+  coverage: Array<Reached>;
+  /** The problems because of which no test could run. */
+  problems: Array<Problem>;
+};
+
+export type TestResult = {
   name: string;
   ok: boolean;
   from: number;
   to: number;
   simulated_ms: number;
   scans: number;
-  notes?: string[];
-  failure?: { message: string; from: number; to: number; time_ms: number; got: [string, string][]; situation: string; chronogram?: string };
-}
+  notes?: Array<string>;
+  failure?: Failure;
+};
 
-export interface TestAnswer {
-  passed: number;
-  failed: number;
-  tests: TestResult[];
-  coverage: { sort: string; total: number; reached: number; missed: string[] }[];
-  problems: Problem[];
-}
+export type TestRow = { name: string; from: number; to: number; plant?: string };
 
-/** A sentence in each language of the page. */
-export type Said = [en: string, fr: string, pt: string];
+/** A text. */
+export type Text = { text: string };
 
-/** A scan of a run: the inputs that change, by the number of their word; values as decimal texts. */
-export interface ProofScan {
-  wait_ns: number;
-  set: [number, string][];
-}
-
-/** The answer to one question about all runs. */
-export interface ProofRow {
-  /** The number of the question. */
-  number: number;
-  claim: Said;
-  /** True if the author asks it in the file. */
-  own: boolean;
-  about: 'step' | 'transition' | 'action' | 'variable' | 'deadlock' | 'conflict' | 'chart' | 'property';
-  verdict: 'proved' | 'refuted' | 'open';
-  reason: Said;
-  /** The way out; empty if none is known. */
-  help: Said;
-  from: number;
-  to: number;
-  line: number;
-  /** The symbol that is asked about. */
-  id?: string;
-  /** The symbols that take part in what the last scan of the run shows. */
-  blame?: string[];
-  /** The run that shows the answer. */
-  run?: ProofScan[];
-  /** The ways in which the plant of the run ticked, where it draws random numbers. */
-  chance?: number[];
-}
-
-export interface ProofReport {
-  /** The fingerprint of the text that was asked. */
-  hash: string;
-  /** True where errors stand in the way of all questions. */
-  refused: boolean;
-  rows: ProofRow[];
-}
-
-/** The ways on from a refuted claim, each a change of the text. */
-export interface ProofWays {
-  cures: { sort: 'exclusive' | 'parallel' | 'priority' | 'assume'; with: string[]; splices: Splice[] }[];
-  test?: { title: string; splices: Splice[] };
-  /** Why there is no test. */
-  untested?: Said;
-}
-
-/** The answer to a comparison of two charts for every sequence of inputs. */
-export interface ComparedReport {
-  is: 'equal' | 'apart' | 'open' | 'unlike' | 'errors';
-  /** The first difference, what is in the way, or why they cannot be compared. */
-  reason: Said;
-  help: Said;
-  /** More states may decide it. */
-  more: boolean;
-  /** There are assumptions, which the inputs of both keep. */
-  assumed: boolean;
-  /** The number of the chart with errors. */
-  side?: number;
-  /** Pairs of states. */
-  states: number;
-  scans: number;
-  /** The run of each chart up to the first difference. */
-  runs?: [ProofScan[], ProofScan[]];
-}
-
-/** A language of logic: Structured Text, Instruction List, Ladder. */
+/** A language of controllers. */
 export type Tongue = 'st' | 'il' | 'ld';
 
-/** A receptivity, a condition or a body in each language. */
-export interface LogicPiece {
-  part: 'receptivity' | 'condition' | 'event' | 'body';
-  /** The number of the action in its step. */
-  index?: number;
-  /** The text is null if the language cannot express the piece; Ladder comes with its picture in
-   * SVG. */
-  forms: { tongue: Tongue; text: string | null; picture?: string }[];
-}
+export type TransitionRow = { id: string };
 
-/** A form in which a chart can be exported. */
-export interface Form {
-  word: string;
-  title: string;
-  kind: 'chart' | 'code' | 'picture';
-  /** G7 reads it back as a chart. */
-  read: boolean;
-}
+/** The classes of variables. */
+export type VariableClass = 'input' | 'output' | 'var' | 'const';
 
-export interface OutFile {
+/** A variable as the table shows it; a field is empty if the variable has no such part. */
+export type VariableEdit = {
+  /** Its name. */
+  name?: string | null;
+  /** `input`, `output`, `var` or `const`; `var` if empty. */
+  class?: string | null;
+  /** Its type; BOOL if empty. */
+  type?: string | null;
+  /** Its initial value. */
+  init?: string | null;
+  /** Its address or channel. */
+  address?: string | null;
+  /** True if the channel carries the complement. */
+  inverted?: boolean;
+  /** True if the value is kept over a restart. */
+  retain?: boolean;
+  /** For an output: its value after a fault. */
+  safe?: string | null;
+  /** Its comment, without quotes. */
+  comment?: string | null;
+  /** The chart to which it belongs; the file if absent. */
+  chart?: string | null;
+};
+
+export type VariableRow = {
   name: string;
-  text: string;
-  /** The lines, from 0, that belong to a symbol. */
-  marks: { id: string; lines: number[] }[];
+  class: VariableClass;
+  type: string;
+  init: string;
+  address: string;
+  inverted: boolean;
+  retain: boolean;
+  safe: string;
+  comment: string;
+  chart?: string;
+  from: number;
+  to: number;
+  uses: number;
+};
+
+/** The present knowledge of a claim. */
+export type Verdict = 'proved' | 'refuted' | 'open';
+
+export type View = { file: string; bindings: Array<Binding> };
+
+/** The contents of each message, beside its name in `do`. */
+export interface Requests {
+  /** Opens a text under a name; a file that is imported gets another name. */
+  open: { file: string; text: string };
+  /** Forgets a file. */
+  close: { file: string };
+  /** Chooses the language of the answers: `en`, `fr`, `pt`. */
+  speak: { language: string };
+  look: { file: string };
+  text: { file: string };
+  /** Changes the text as it is typed. A unit is undone alone. */
+  splice: { file: string; splices: Array<Splice>; unit?: boolean };
+  /** Executes a gesture. */
+  edit: { file: string; gesture: Gesture };
+  undo: { file: string };
+  redo: { file: string };
+  /** Copies symbols as text, to be pasted elsewhere. */
+  copy: { file: string; ids: Array<ItemId> };
+  /** Merges two changes of one text. */
+  merge: { base: string; mine: string; theirs: string };
+  format: { file: string };
+  /** The places that name the same part as the word at a place. */
+  references: { file: string; at: number };
+  drawing: {
+    file: string;
+    chart: string;
+    look?: Standard | null;
+    pages?: Pages | null;
+    actions?: boolean | null;
+    /** The number of the drawing that the page has, 0 if none; absent if this one is not to be kept. */
+    since?: number | null;
+  };
+  /** Lists the forms in which a chart can be exported. */
+  forms: object;
+  /** Exports a file in one of them. */
+  export: { file: string; to: string };
+  /** The logic of a symbol in the languages of controllers. */
+  logic: { file: string; id: string };
+  /** Converts logic in one of these languages to an expression of the text. */
+  logic_read: { tongue: Tongue; text: string };
+  /** The style sheet of the drawings. */
+  style: { dark?: boolean };
+  /** The page on a kind of problem. */
+  explain: { code: string };
+  /** Runs the tests whose titles contain `name`, or all. */
+  test: { file: string; name?: string | null };
+  /** Answers all questions about the file, as far as the limits go. */
+  prove: {
+    file: string;
+    /** Most states kept. */
+    states: number;
+    /** Most memory for them, in MiB. */
+    mib: number;
+  };
+  /** The ways on from a refuted claim. */
+  prove_ways: {
+    file: string;
+    /** The fingerprint of the text that was asked. */
+    hash: string;
+    /** The number of the question. */
+    question: number;
+    run: Array<ProofScan>;
+    /** The ways in which the plant ticked. */
+    chance?: Array<number>;
+  };
+  /** Compares two files for every sequence of inputs, as far as the limits go. */
+  compare: {
+    /** The names of the two files, which may be one. */
+    files: [string, string];
+    /** For each of them the profile, if it is not its own. */
+    profiles?: [string | null, string | null];
+    /** Situations are compared too. */
+    situations?: boolean;
+    /** Most states kept. */
+    states: number;
+    /** Most memory for them, in MiB. */
+    mib: number;
+  };
+  /** The text before the last change. */
+  before: { file: string };
+  /** The classes of the tokens in a part of the text. */
+  tokens: { file: string; from?: number; to?: number };
+  complete: { file: string; at: number };
+  hover: { file: string; at: number };
+  /** The tables of variables and steps. */
+  symbols: { file: string };
+  search: { file: string; text: string };
+  run_start: {
+    file: string;
+    run: string;
+    profile?: string | null;
+    scan_ms?: number | null;
+    plant?: string | null;
+    seed?: number;
+    /** A run to be repeated from the start, without the user. */
+    moves?: Array<ProofScan> | null;
+  };
+  run_advance: { run: string; ms: number; most_scans?: number | null; times?: boolean };
+  run_scan: { run: string; times?: boolean };
+  run_pass: { run: string; times?: boolean };
+  run_set: { run: string; signal: number; value: string };
+  run_toggle: { run: string; signal: number };
+  run_force: { run: string; signal: number; value: string };
+  /** Releases one signal, or all if none is named. */
+  run_release: { run: string; signal?: number | null };
+  run_restart: { run: string; warm?: boolean };
+  /** Shows the run as it was at an instant. */
+  run_seek: { run: string; ms: number };
+  /** Shows the present again, or goes on from the shown instant. */
+  run_live: { run: string; here?: boolean };
+  run_breaks: { run: string; ids: Array<string> };
+  /** Continues a run with a changed text; what would be lost is lost only by force. */
+  run_swap: { run: string; file: string; force?: boolean };
+  run_stop: { run: string };
+  run_frame: { run: string; full?: boolean; times?: boolean };
+  /** Asks again for the description of a run that its start returned. */
+  run_signals: { run: string };
+  run_lanes: { run: string; signals: Array<number>; from_ms: number; to_ms: number; most?: number };
+  /** The signals as a file; all of them if none is named. */
+  run_export: {
+    run: string;
+    signals?: Array<number>;
+    as: SignalsForm;
+    from_ms?: number | null;
+    to_ms?: number | null;
+  };
 }
 
-/** An exported chart. */
-export interface Out {
-  files: OutFile[];
-  /** Parts of the chart that the export does not contain; places are those of the chart. */
-  problems: Problem[];
-  /** True if the export has another meaning than the chart. */
-  lossy: boolean;
+/** The answer to each message. */
+export interface Answers {
+  open: Look;
+  close: null;
+  speak: null;
+  look: Look;
+  text: Text;
+  splice: Look;
+  edit: Edited;
+  undo: Edited;
+  redo: Edited;
+  copy: Text;
+  merge: Merged;
+  format: Edited;
+  references: Array<[number, number]>;
+  drawing: Redrawn;
+  forms: Array<Form>;
+  export: Out;
+  logic: Array<LogicPiece>;
+  logic_read: Text;
+  style: Style;
+  explain: Explained;
+  test: TestAnswer;
+  prove: ProofReport;
+  prove_ways: ProofWays;
+  compare: ComparedReport;
+  before: Before;
+  tokens: Array<[number, number, string]>;
+  complete: Completions;
+  hover: Hover | null;
+  symbols: Symbols;
+  search: Array<SearchHit>;
+  run_start: Started;
+  run_advance: Frame;
+  run_scan: Frame;
+  run_pass: Frame;
+  run_set: Frame;
+  run_toggle: Frame;
+  run_force: Frame;
+  run_release: Frame;
+  run_restart: Frame;
+  run_seek: Frame;
+  run_live: Frame;
+  run_breaks: Breaks;
+  run_swap: Swapped;
+  run_stop: null;
+  run_frame: Frame;
+  run_signals: Started;
+  run_lanes: Lanes;
+  run_export: Text;
 }

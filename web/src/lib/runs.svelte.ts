@@ -3,7 +3,7 @@
 import { differ, type Difference } from '../run/compare';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
-import { page, type Answers, type Message } from './page';
+import { page, type Move } from './page';
 import type { Frame, ProofScan, Started } from './protocol';
 import { server } from './server';
 import { shell } from './shell.svelte';
@@ -63,7 +63,7 @@ class Runs {
     const before = this.of(file.name);
     this.#wishes = new Map(this.#wishes).set(file.name, wishes);
     if (before?.shared) await this.#quit(before);
-    const started = await page.call<Started>({ do: 'run_start', file: file.name, run: file.name, ...wishes });
+    const started = await page.call({ do: 'run_start', file: file.name, run: file.name, ...wishes });
     const run = new Run(started, page, false);
     run.speed = before?.speed ?? 1;
     this.#put(file.name, run);
@@ -77,7 +77,7 @@ class Runs {
     if (this.other?.file === file.name) await this.compare(null);
     const before = this.of(file.name);
     if (before?.shared) await this.#quit(before);
-    const started = await page.call<Started>({ do: 'run_start', file: file.name, run: file.name, plant: 'none', moves });
+    const started = await page.call({ do: 'run_start', file: file.name, run: file.name, plant: 'none', moves });
     const run = new Run(started, page, false);
     this.#put(file.name, run);
     await this.#tellBreaks(run);
@@ -100,7 +100,7 @@ class Runs {
 
   /** Sends a message to a run and to the one it is compared with, and takes the frames that come
    * back. */
-  async send(run: Run, message: Message): Promise<void> {
+  async send(run: Run, message: Move): Promise<void> {
     const other = this.other && this.other.file === run.file && !run.shared ? this.other : null;
     const before = run.now;
     const anew = message.do === 'run_restart';
@@ -115,19 +115,19 @@ class Runs {
     }
   }
 
-  async #send(run: Run, message: Message): Promise<void> {
-    run.take(await run.answers.call<Frame>({ ...message, run: run.name }));
+  async #send(run: Run, message: Move): Promise<void> {
+    run.take(await run.answers.call({ ...message, run: run.name }));
   }
 
   async play(run: Run, on: boolean): Promise<void> {
     if (!run.live && on) await this.send(run, { do: 'run_live' });
-    if (run.shared) await run.answers.call({ do: 'pace', run: run.name, speed: on ? run.speed : 0 });
+    if (run.shared) await server.call({ do: 'pace', run: run.name, speed: on ? run.speed : 0 });
     run.playing = on && !run.halt;
   }
 
   async pace(run: Run, speed: number): Promise<void> {
     run.speed = speed;
-    if (run.shared && run.playing) await run.answers.call({ do: 'pace', run: run.name, speed });
+    if (run.shared && run.playing) await server.call({ do: 'pace', run: run.name, speed });
   }
 
   async toggleBreak(file: string, id: string): Promise<void> {
@@ -138,7 +138,7 @@ class Runs {
   }
 
   async #tellBreaks(run: Run): Promise<void> {
-    const ids = this.breaks(run.file);
+    const ids = [...this.breaks(run.file)];
     await run.answers.call({ do: 'run_breaks', run: run.name, ids });
   }
 
@@ -155,8 +155,8 @@ class Runs {
 
   async #beside(run: Run, profile: string): Promise<void> {
     this.difference = null;
-    const message = { do: 'run_start', file: run.file, run: `${run.file}|b`, ...this.wishes(run.file), profile };
-    const other = new Run(await page.call<Started>(message), page, false);
+    const started = await page.call({ do: 'run_start', ...this.wishes(run.file), file: run.file, run: `${run.file}|b`, profile });
+    const other = new Run(started, page, false);
     this.other = other;
     this.difference = await differ(run, other);
   }
@@ -166,10 +166,9 @@ class Runs {
   async swap(file: OpenFile, force = false, quiet = false): Promise<void> {
     const run = this.of(file.name);
     if (!run || run.hash === file.look.hash) return;
-    const message: Message = { do: 'run_swap', run: run.name, file: file.name, force };
-    if (run.shared) message.text = file.text;
     try {
-      const answer = await run.answers.call<Started | { lost: string[] }>(message);
+      const wish = { do: 'run_swap', run: run.name, file: file.name, force } as const;
+      const answer = await (run.shared ? server.call({ ...wish, text: file.text }) : page.call(wish));
       run.refused = null;
       if ('lost' in answer) {
         run.losing = quiet ? null : answer.lost;
@@ -188,17 +187,16 @@ class Runs {
   /** Hands a run to the server, or joins the server's run of this file. */
   async share(file: OpenFile): Promise<void> {
     this.#hear();
-    const { runs } = await server.call<{ runs: { run: string; file: string }[] }>({ do: 'runs' });
+    const { runs } = await server.call({ do: 'runs' });
     const known = runs.find((r) => r.file === file.name);
-    const message: Message = known
-      ? { do: 'watch', run: known.run }
-      : { do: 'run_start', run: file.name, file: file.name, text: file.text, ...this.wishes(file.name) };
-    const started = await server.call<Started & { speed?: number }>(message);
+    const started = await (known
+      ? server.call({ do: 'watch', run: known.run })
+      : server.call({ do: 'run_start', ...this.wishes(file.name), run: file.name, file: file.name, text: file.text }));
     const before = this.of(file.name);
     // The run must be known before any waiting, because its frames come from now on.
-    const run = new Run(started, server as Answers, true);
+    const run = new Run(started, server, true);
     run.foreign = run.hash !== file.look.hash;
-    this.#paced(run, started.speed ?? 0);
+    this.#paced(run, started.speed);
     this.#put(file.name, run);
     if (known) this.#breaksAre(file.name, started.breaks);
     else await this.#tellBreaks(run);
@@ -209,7 +207,7 @@ class Runs {
   /** True if the server has a run of this file. */
   async isShared(file: string): Promise<boolean> {
     if (!server.info) return false;
-    const { runs } = await server.call<{ runs: { file: string }[] }>({ do: 'runs' });
+    const { runs } = await server.call({ do: 'runs' });
     return runs.some((r) => r.file === file);
   }
 
@@ -219,7 +217,7 @@ class Runs {
   }
 
   async #quit(run: Run): Promise<void> {
-    await run.answers.call({ do: 'unwatch', run: run.name }).catch(() => undefined);
+    await server.call({ do: 'unwatch', run: run.name }).catch(() => undefined);
   }
 
   /** Handles the messages that the server sends on its own about shared runs. */
@@ -265,7 +263,7 @@ class Runs {
   async #again(run: Run): Promise<void> {
     if (!run.shared || !run.playing || performance.now() - run.heard < SILENT) return;
     try {
-      run.begin(await server.call<Started>({ do: 'watch', run: run.name }));
+      run.begin(await server.call({ do: 'watch', run: run.name }));
     } catch (error) {
       run.playing = false;
       shell.say((error as Error).message, 'error');

@@ -1,6 +1,8 @@
 // Files and shared runs of `g7 serve`. Without a server (in the static playground) the examples
 // come from one file beside the page, and nothing is written.
-import { opened, Refused, type Answers, type Message } from './page';
+import type { Wishes } from '../operator/told';
+import { opened, Refused, type Door, type Message, type RunName } from './page';
+import type { Answers, Started } from './protocol';
 import { session } from './session.svelte';
 
 export interface Info {
@@ -23,6 +25,23 @@ export interface FileRow {
 export interface Changed {
   path: string;
   hash: string;
+}
+
+/** A run of the server, with its speed. */
+export type Shared = Started & { speed: number };
+
+/** The messages that the server answers itself, and its answers (`crates/g7/src/serve`). */
+interface Own extends Wishes {
+  runs: { asked: object; told: { runs: { run: string; file: string; speed: number }[] } };
+  watch: { asked: { run: string }; told: Shared };
+  unwatch: { asked: { run: string }; told: null };
+  pace: { asked: { run: string; speed: number }; told: { run: string; speed: number } };
+}
+
+/** The messages that may bring the text of their file. */
+interface WithText {
+  run_start: Shared;
+  run_swap: Answers['run_swap'];
 }
 
 /** The file was changed by someone else since it was read. */
@@ -50,7 +69,7 @@ function takeToken(): string {
   return sessionStorage.getItem(TOKEN) ?? '';
 }
 
-class Server implements Answers {
+class Server implements Door {
   info: Info | null = null;
   /** The files of the static playground. */
   #examples = new Map<string, string>();
@@ -177,12 +196,15 @@ class Server implements Answers {
     return () => this.#linked.delete(listener);
   }
 
-  /** Sends a message to the server's page, for shared runs. */
-  async call<T>(message: Message): Promise<T> {
+  /** Sends a message to a shared run, or to the server itself. */
+  call<N extends keyof WithText>(message: { do: N; text: string } & Message<N>): Promise<WithText[N]>;
+  call<N extends RunName>(message: { do: N } & Message<N>): Promise<Answers[N]>;
+  call<N extends keyof Own>(message: { do: N } & Own[N]['asked']): Promise<Own[N]['told']>;
+  async call(message: object): Promise<unknown> {
     const socket = await this.#live();
     const id = this.#next++;
-    return new Promise<T>((resolve, reject) => {
-      this.#waiting.set(id, { resolve: resolve as (v: unknown) => void, reject });
+    return new Promise((resolve, reject) => {
+      this.#waiting.set(id, { resolve, reject });
       socket.send(JSON.stringify({ id, call: message }));
     });
   }

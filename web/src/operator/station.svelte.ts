@@ -1,7 +1,8 @@
 // A running controller as the page knows it. Whatever is older than a moment counts as unknown.
-import type { Message } from '../lib/page';
 import { server } from '../lib/server';
-import type { ChartFile, Counts, Description, DeviceState, Event, Forced, Frame, Mode, Quality } from './told';
+import type { ChartFile, Counts, Description, DeviceState, Event, Forced, Frame, Mode, Quality, Wishes } from './told';
+
+type Wish<N extends keyof Wishes> = { do: N } & Wishes[N]['asked'];
 
 /** Without a frame for so long there is no connection, in ms; 20 frames come in a second. */
 const SILENT = 1200;
@@ -54,7 +55,7 @@ export class Station {
 
   async #watch(): Promise<void> {
     try {
-      const told = await server.call<Description>({ do: 'operator_watch' });
+      const told = await server.call({ do: 'operator_watch' });
       this.#up = true;
       this.told = told;
       this.values = [];
@@ -111,7 +112,7 @@ export class Station {
   }
 
   /** Gives a command; what is refused is told. */
-  async do(message: Message): Promise<boolean> {
+  async do<N extends keyof Wishes>(message: Wish<N>): Promise<boolean> {
     this.refused = '';
     const answer = await this.ask(message);
     if ('no' in answer) this.refused = answer.no;
@@ -119,9 +120,9 @@ export class Station {
   }
 
   /** Gives a command whose answer its caller shows. */
-  async ask<T>(message: Message): Promise<{ ok: T } | { no: string }> {
+  async ask<N extends keyof Wishes>(message: Wish<N>): Promise<{ ok: Wishes[N]['told'] } | { no: string }> {
     try {
-      return { ok: await server.call<T>(message) };
+      return { ok: await server.call(message) };
     } catch (error) {
       return { no: (error as Error).message };
     }

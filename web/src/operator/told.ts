@@ -151,3 +151,23 @@ export interface Frame {
   values?: [signal: number, value: string, quality: Quality][];
   view?: [part: number, value: boolean | number | string][];
 }
+
+/** The wishes of a person, and what is told of each (`crates/g7/src/operator/order.rs`). */
+export interface Wishes {
+  operator_watch: { asked: object; told: Description };
+  operator_run: { asked: object; told: null };
+  operator_stop: { asked: object; told: null };
+  operator_ack: { asked: object; told: null };
+  operator_cold: { asked: object; told: null };
+  operator_force: { asked: { name: string; value: string; seconds?: number }; told: null };
+  operator_release: { asked: { name: string }; told: null };
+  operator_release_all: { asked: object; told: null };
+  operator_change: { asked: { anyway?: boolean }; told: Changed };
+  operator_back: { asked: { anyway?: boolean }; told: Changed };
+  operator_press: { asked: { name: string; down: boolean }; told: null };
+  operator_set: { asked: { name: string; value: string }; told: null };
+  operator_seen: { asked: { event: number; all: boolean }; told: null };
+}
+
+/** A change of the chart that was made, or what it would lose. */
+export type Changed = { lost: string[] } | { asks: string[] };

@@ -20,7 +20,7 @@ class Tests {
     try {
       await file.settled();
       const { hash } = file.look;
-      const answer = await page.call<TestAnswer>({ do: 'test', file: file.name, ...(name === undefined ? {} : { name }) });
+      const answer = await page.call({ do: 'test', file: file.name, ...(name === undefined ? {} : { name }) });
       const same = this.file === file.name && this.hash === hash;
       const before = same && name !== undefined ? this.results : [];
       this.results = new Map([...before, ...answer.tests.map((r): [string, TestResult] => [r.name, r])]);

@@ -3,7 +3,7 @@ import type { Side } from '../lib/compared.svelte';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page, Refused } from '../lib/page';
-import type { Form, OutFile } from '../lib/protocol';
+import type { Form } from '../lib/protocol';
 import { server } from '../lib/server';
 
 const base = (path: string) => path.slice(path.lastIndexOf('/') + 1);
@@ -11,7 +11,7 @@ const base = (path: string) => path.slice(path.lastIndexOf('/') + 1);
 /** The forms that are read back. */
 let known: Promise<Form[]> | undefined;
 export function forms(): Promise<Form[]> {
-  known ??= page.call<Form[]>({ do: 'forms' }).then((all) => all.filter((f) => f.read));
+  known ??= page.call({ do: 'forms' }).then((all) => all.filter((f) => f.read));
   return known;
 }
 
@@ -25,12 +25,12 @@ export async function sides(file: OpenFile, choice: string): Promise<readonly [S
   const [sort, what] = at < 0 ? [choice, ''] : [choice.slice(0, at), choice.slice(at + 1)];
   if (sort === 'profile') return [{ ...mine, title: profile, profile }, { ...mine, title: what, profile: what }];
   if (sort === 'before') {
-    const { text } = await page.call<{ text: string | null }>({ do: 'before', file: file.name });
+    const { text } = await page.call({ do: 'before', file: file.name });
     if (text === null) throw new Refused(t('compare.nothing'));
     return [{ ...mine, title: t('compare.before'), text }, mine];
   }
   if (sort === 'form') {
-    const made = await page.call<{ files: OutFile[] }>({ do: 'export', file: file.name, to: what });
+    const made = await page.call({ do: 'export', file: file.name, to: what });
     const out = made.files.at(-1);
     if (!out) throw new Refused(t('compare.unwritten'));
     return [mine, { title: base(out.name), name: base(out.name), text: out.text, profile: null }];

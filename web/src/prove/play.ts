@@ -35,7 +35,7 @@ async function walk(run: Run, scans: number): Promise<void> {
   const stride = Math.max(1, Math.ceil((scans * seen) / WHOLE));
   const mine = (at: number) => proofs.playing?.run === run && Math.abs(run.now - at) < period / 2;
   for (let scan = 0; scan < scans - 1; scan += stride) {
-    await runs.send(run, { do: 'run_seek', ms: scan * period, times: true });
+    await runs.send(run, { do: 'run_seek', ms: scan * period });
     await wait(seen);
     if (!mine(scan * period)) return;
   }

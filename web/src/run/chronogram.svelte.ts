@@ -3,14 +3,8 @@
 import { shell } from '../lib/shell.svelte';
 import { handOut } from '../frame/actions';
 import type { SignalType } from '../lib/protocol';
-import type { Edge, Lane, Span } from './lanes';
+import type { Lane, Span } from './lanes';
 import type { Run } from './state.svelte';
-
-interface Lanes {
-  start_ms: number;
-  end_ms: number;
-  lanes: Edge[][];
-}
 
 /** A signal or a step, by its name, which stays when the chart changes. */
 export interface Source {
@@ -94,7 +88,7 @@ class Chronogram {
     this.#busy = true;
     const picked = this.picked(run);
     try {
-      const answer = await run.answers.call<Lanes>({
+      const answer = await run.answers.call({
         do: 'run_lanes',
         run: run.name,
         signals: picked.map((s) => s.lane),
@@ -118,7 +112,7 @@ class Chronogram {
     const signals = this.picked(run).map((s) => s.lane);
     const span = as === 'svg' ? { from_ms: Math.max(0, this.span.from), to_ms: Math.min(run.end, this.span.to) } : {};
     await shell.try(async () => {
-      const { text } = await run.answers.call<{ text: string }>({ do: 'run_export', run: run.name, signals, as, ...span });
+      const { text } = await run.answers.call({ do: 'run_export', run: run.name, signals, as, ...span });
       const name = run.file.slice(run.file.lastIndexOf('/') + 1).replace(/\.g7$/, '');
       handOut(`${name}.${as}`, text, as === 'svg' ? 'image/svg+xml' : as === 'csv' ? 'text/csv' : 'text/plain');
     });

@@ -8,10 +8,6 @@ export interface Difference {
   seen: boolean;
 }
 
-interface Lanes {
-  lanes: [number, number, string][][];
-}
-
 /** Steps and outputs by name, with the numbers of their signals. */
 function watched(run: Run): Map<string, number> {
   const found = new Map<string, number>();
@@ -48,10 +44,10 @@ export async function differ(a: Run, b: Run, since = 0): Promise<Difference | nu
   const names = [...here.keys()].filter((n) => there.has(n));
   const to = Math.max(a.now, b.now);
   const ask = (run: Run, of: Map<string, number>) =>
-    run.answers.call<Lanes>({
+    run.answers.call({
       do: 'run_lanes',
       run: run.name,
-      signals: names.map((n) => of.get(n)),
+      signals: names.flatMap((n) => of.get(n) ?? []),
       from_ms: Math.min(since, a.now, b.now),
       to_ms: to,
       most: 100_000,

@@ -1,6 +1,6 @@
 // One run as the page knows it: the merged frames. Frames contain only changes; the data of the
 // tables is kept by signal and by step, so that a changed value affects one row only.
-import type { Answers } from '../lib/page';
+import type { Door } from '../lib/page';
 import type { Frame, SignalRow, Started } from '../lib/protocol';
 
 /** While it runs, the time in the bar changes at most this often, in ms, so that it can be read. */
@@ -18,7 +18,7 @@ export class Run {
   readonly file: string;
   /** True if the server holds the run, so that all watching pages see it. */
   readonly shared: boolean;
-  readonly answers: Answers;
+  readonly answers: Door;
   started: Started = $state.raw(undefined as unknown as Started);
 
   /** The shown values, by signal. */
@@ -73,7 +73,7 @@ export class Run {
 
   #watchers = new Set<Watcher>();
 
-  constructor(started: Started, answers: Answers, shared: boolean) {
+  constructor(started: Started, answers: Door, shared: boolean) {
     this.name = started.run;
     this.file = started.file;
     this.answers = answers;

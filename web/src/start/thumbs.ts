@@ -1,7 +1,8 @@
 // Small pictures of files for the gallery, drawn by the same crates as the page: one after the
 // other, and only those that become visible.
 import { page } from '../lib/page';
-import type { Box, Drawing, Look } from '../lib/protocol';
+import type { Box } from '../lib/protocol';
+import { drawn } from '../lib/redrawn';
 import { server, type FileRow } from '../lib/server';
 
 export interface Thumb {
@@ -34,11 +35,11 @@ async function draw(path: string): Promise<Thumb> {
 }
 
 export async function picture(path: string, text: string): Promise<Thumb> {
-  const { file, charts, tests, plants } = await page.call<Look>({ do: 'open', file: `\u0000gallery/${path}`, text });
+  const { file, charts, tests, plants } = await page.call({ do: 'open', file: `\u0000gallery/${path}`, text });
   try {
     const own = charts.filter((c) => !c.of && c.kind === 'chart');
     const chart = own[0] ?? charts[0];
-    const drawing = chart ? await page.call<Drawing>({ do: 'drawing', file, chart: chart.name }) : null;
+    const drawing = chart ? await drawn({ file, chart: chart.name }) : null;
     return {
       about: about(text),
       svg: drawing?.items.map((i) => i.svg).join('') ?? '',

@@ -6,7 +6,7 @@ import { hoverTooltip } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page } from '../lib/page';
-import type { Completions, Fix, Hover, Problem, Symbols } from '../lib/protocol';
+import type { Fix, Problem } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 import { explanation } from './explain';
 import { markdown } from './markdown';
@@ -32,7 +32,7 @@ export function completion(file: OpenFile) {
     if (!before && !context.explicit) return null;
     await file.settled();
     if (context.aborted) return null;
-    const found = await page.call<Completions | null>({ do: 'complete', file: file.name, at: context.pos }).catch(() => null);
+    const found = await page.call({ do: 'complete', file: file.name, at: context.pos }).catch(() => null);
     if (!found || found.items.length === 0) return null;
     const options = found.items.map((item): Completion => ({
       label: item.label,
@@ -50,7 +50,7 @@ export function hover(file: OpenFile) {
     await file.settled();
     // The message of the problem is enough here.
     if (file.look.problems.some((p) => p.from <= at && at <= p.to)) return null;
-    const found = await page.call<Hover | null>({ do: 'hover', file: file.name, at }).catch(() => null);
+    const found = await page.call({ do: 'hover', file: file.name, at }).catch(() => null);
     if (!found || view.state.doc !== doc) return null;
     return {
       pos: found.from,
@@ -112,10 +112,10 @@ export interface Named {
 /** The name at a place, and all other places where it is used. */
 export async function named(file: OpenFile, state: EditorState, at: number): Promise<Named | null> {
   await file.settled();
-  const places = await page.call<[number, number][]>({ do: 'references', file: file.name, at }).catch(() => []);
+  const places = await page.call({ do: 'references', file: file.name, at }).catch(() => []);
   const here = places.find(([from, to]) => from <= at && at <= to) ?? places[0];
   if (!here) return null;
-  const symbols = await page.call<Symbols>({ do: 'symbols', file: file.name });
+  const symbols = await page.call({ do: 'symbols', file: file.name });
   const same = (row: { from: number; to: number }) => places.some(([from, to]) => row.from <= from && to <= row.to && row.to - row.from < 200);
   const step = symbols.steps.find(same);
   const variable = step ? undefined : symbols.variables.find(same);

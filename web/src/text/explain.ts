@@ -14,6 +14,6 @@ export async function explanation(code: string): Promise<{ language: Language; m
   const pages = (await others[language]?.())?.pages ?? {};
   const own = Object.entries(pages).find(([path]) => path.endsWith(`/${code}.md`));
   if (own) return { language, markdown: own[1] };
-  const { markdown } = await page.call<{ markdown: string }>({ do: 'explain', code });
+  const { markdown } = await page.call({ do: 'explain', code });
   return { language: 'en', markdown };
 }

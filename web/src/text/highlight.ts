@@ -67,7 +67,7 @@ export function highlight(file: OpenFile) {
           const { viewport } = this.view;
           const from = Math.max(0, viewport.from - MARGIN);
           const to = Math.min(doc.length, viewport.to + MARGIN);
-          const tokens = await page.call<Token[]>({ do: 'tokens', file: file.name, from, to });
+          const tokens = await page.call({ do: 'tokens', file: file.name, from, to });
           if (this.#gone) return;
           if (this.view.state.doc === doc) this.view.dispatch({ effects: coloured.of({ from, to, tokens }) });
           else this.soon(PAUSE);

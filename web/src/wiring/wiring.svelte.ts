@@ -98,7 +98,7 @@ class Wiring {
 
   /** Takes the values from the controller of this server, which has the devices. */
   async #watch(): Promise<void> {
-    const told = await server.call<Description>({ do: 'operator_watch' }).catch(() => null);
+    const told = await server.call({ do: 'operator_watch' }).catch(() => null);
     if (!told) return;
     this.#told = told;
     const base = (path: string) => path.split(/[\\/]/).at(-1);

@@ -13,6 +13,7 @@ use crate::overview::hash;
 
 /// The page's request: how far the search may go.
 #[derive(Clone, Copy, Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Limits {
     /// Most states kept.
     pub(super) states: usize,

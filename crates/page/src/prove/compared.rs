@@ -13,24 +13,42 @@ use crate::run::{Scan, profile};
 
 /// The page's request for a comparison.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
 pub(crate) struct Both {
     /// The names of the two files, which may be one.
     pub(crate) files: [String; 2],
     /// For each of them the profile, if it is not its own.
     #[serde(default)]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
     profiles: [Option<String>; 2],
     /// Situations are compared too.
     #[serde(default)]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
     situations: bool,
     #[serde(flatten)]
     limits: Limits,
 }
 
+/// The outcomes of a comparison.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum Outcome {
+    Equal,
+    Apart,
+    #[default]
+    Open,
+    /// They cannot be compared.
+    Unlike,
+    /// One of them has errors.
+    Errors,
+}
+
 /// The answer.
 #[derive(Debug, Default, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ComparedReport", optional_fields))]
 pub(crate) struct Compared {
-    /// `equal`, `apart`, `open`, `unlike`, or `errors`.
-    is: &'static str,
+    is: Outcome,
     /// The reason: the proof, the first difference, what is in the way, why they cannot be compared.
     reason: Said,
     /// The way on; empty if none is known.
@@ -61,7 +79,7 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
             (Some(asked), problems) if !wrong && problems.iter().all(|p| p.severity() != Severity::Error) => {
                 sides.push(asked);
             }
-            _ => return Ok(Compared { is: "errors", side: Some(side), ..Compared::default() }),
+            _ => return Ok(Compared { is: Outcome::Errors, side: Some(side), ..Compared::default() }),
         }
     }
     let [a, b] = sides.as_slice() else { return Err("two files are compared".to_owned()) };
@@ -76,17 +94,17 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
     let what = Compare { charts: [&a.compiled, &b.compiled], assume, situations: wish.situations };
     Ok(match g7_verify::compare_once(&what, &budget) {
         Equality::Equal(proof) => {
-            Compared { is: "equal", reason: words::equal(&proof), assumed, ..Compared::default() }
+            Compared { is: Outcome::Equal, reason: words::equal(&proof), assumed, ..Compared::default() }
         }
         Equality::Apart { moves, what } => Compared {
-            is: "apart",
+            is: Outcome::Apart,
             reason: words::difference(&what),
             scans: moves.first().map_or(0, Vec::len),
             runs: Some(moves.map(|m| Scan::list(&m))),
             ..Compared::default()
         },
         Equality::Open(Open { scans, states, reason }) => Compared {
-            is: "open",
+            is: Outcome::Open,
             assumed,
             more: reason.is_of_budget(),
             help: if reason.is_of_budget() { Said::default() } else { words::way_on(&reason) },
@@ -96,7 +114,7 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
             ..Compared::default()
         },
         Equality::Unlike(why) => {
-            Compared { is: "unlike", reason: words::unlike(&why), ..Compared::default() }
+            Compared { is: Outcome::Unlike, reason: words::unlike(&why), ..Compared::default() }
         }
     })
 }

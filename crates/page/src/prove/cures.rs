@@ -17,10 +17,22 @@ use super::asked::changed;
 use super::place::line_end;
 use crate::places::{Change, outward};
 
+/// The kinds of cures.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "CureSort"))]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Way {
+    Exclusive,
+    Parallel,
+    Priority,
+    Assume,
+}
+
 /// A change of the text that a refuted claim offers.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(super) struct Cure {
-    sort: &'static str,
+    sort: Way,
     /// The texts that its title names.
     with: Vec<String>,
     splices: Vec<Change>,
@@ -39,15 +51,18 @@ struct Pair<'a> {
 pub(super) fn cures(file: &File, model: &Model<'_>, run: &Run) -> Vec<Cure> {
     let found = blame(model, &Claim::NoConflict, run);
     let Some(pair) = pair(file, model, &found.transitions) else { return Vec::new() };
-    let offered =
-        [("exclusive", pair.exclusive()), ("parallel", pair.parallel()), ("priority", pair.priority())];
+    let offered = [
+        (Way::Exclusive, pair.exclusive()),
+        (Way::Parallel, pair.parallel()),
+        (Way::Priority, pair.priority()),
+    ];
     let good = |splices: &Vec<Splice>| cures_it(file, model, run, splices);
     let offered = offered.into_iter().filter_map(|(sort, splices)| Some((sort, splices.filter(good)?)));
     offered.map(|(sort, splices)| Cure::new(sort, pair.receptivities(), outward(file, &splices))).collect()
 }
 
 impl Cure {
-    pub(super) fn new(sort: &'static str, with: Vec<String>, splices: Vec<Change>) -> Cure {
+    pub(super) fn new(sort: Way, with: Vec<String>, splices: Vec<Change>) -> Cure {
         Cure { sort, with, splices }
     }
 }

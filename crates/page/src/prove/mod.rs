@@ -20,5 +20,6 @@ pub mod saved;
 mod ways;
 
 pub(crate) use asked::{Limits, Proof, prove};
-pub(crate) use compared::{Both, compared};
-pub(crate) use ways::{Wish, ways};
+pub(crate) use compared::{Both, Compared, compared};
+pub(crate) use rows::Report;
+pub(crate) use ways::{Ways, Wish, ways};

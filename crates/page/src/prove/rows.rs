@@ -11,6 +11,7 @@ use crate::run::Scan;
 
 /// All answers to the questions of a file.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ProofReport"))]
 pub(crate) struct Report {
     /// The fingerprint of the text that was asked, as in the overview of a file.
     hash: String,
@@ -46,8 +47,34 @@ impl Report {
     }
 }
 
+/// The kinds of claims.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum About {
+    Step,
+    Transition,
+    Action,
+    Variable,
+    Deadlock,
+    Conflict,
+    Chart,
+    Property,
+}
+
+/// The present knowledge of a claim.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Verdict"))]
+#[serde(rename_all = "snake_case")]
+enum Found {
+    Proved,
+    Refuted,
+    Open,
+}
+
 /// The answer to one question.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ProofRow", optional_fields))]
 struct Row {
     /// The number of the question.
     number: usize,
@@ -55,9 +82,10 @@ struct Row {
     /// True if the author asks it in the file.
     own: bool,
     /// The kind of claim, for the panel.
-    about: &'static str,
-    verdict: &'static str,
+    about: About,
+    verdict: Found,
     reason: Said,
+    /// The way out; empty if none is known.
     help: Said,
     /// The place of what is asked about.
     from: usize,
@@ -67,12 +95,14 @@ struct Row {
     #[serde(skip_serializing_if = "Option::is_none")]
     id: Option<String>,
     /// The symbols that take part in what the last scan of the run shows.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     blame: Vec<String>,
     /// The run that shows the answer.
     #[serde(skip_serializing_if = "Option::is_none")]
     run: Option<Vec<Scan>>,
     /// The ways in which its plant ticked, for each scan; empty unless it draws random numbers.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     chance: Vec<u8>,
 }
@@ -103,9 +133,9 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
         own,
         about: about(&question.claim),
         verdict: match verdict {
-            Verdict::Proved(_) => "proved",
-            Verdict::Refuted(_) => "refuted",
-            Verdict::Open(_) => "open",
+            Verdict::Proved(_) => Found::Proved,
+            Verdict::Refuted(_) => Found::Refuted,
+            Verdict::Open(_) => Found::Open,
         },
         reason: words::reason(verdict, time),
         help: match verdict {
@@ -126,20 +156,20 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
     }
 }
 
-fn about(claim: &Claim) -> &'static str {
+fn about(claim: &Claim) -> About {
     match claim {
-        Claim::Active(_) => "step",
-        Claim::Clears(_) => "transition",
-        Claim::Runs(_) => "action",
-        Claim::On(_) | Claim::Asked(_) => "variable",
-        Claim::NoDeadlock => "deadlock",
-        Claim::NoConflict => "conflict",
+        Claim::Active(_) => About::Step,
+        Claim::Clears(_) => About::Transition,
+        Claim::Runs(_) => About::Action,
+        Claim::On(_) | Claim::Asked(_) => About::Variable,
+        Claim::NoDeadlock => About::Deadlock,
+        Claim::NoConflict => About::Conflict,
         Claim::NoUnsafe
         | Claim::NoInstability
         | Claim::NoOpposedWrites
         | Claim::NoOpposedOrders
-        | Claim::NoFault => "chart",
-        _ => "property",
+        | Claim::NoFault => About::Chart,
+        _ => About::Property,
     }
 }
 

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::asked::{closed, questions};
 use super::assume::Refuted;
-use super::cures::{Cure, cures};
+use super::cures::{Cure, Way, cures};
 use super::place::{Sort, place};
 use super::saved::{self, Given};
 use crate::overview::hash;
@@ -22,6 +22,7 @@ use crate::run::Scan;
 
 /// The page's request for the ways on from an answer.
 #[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "WaysWish"))]
 pub(crate) struct Wish {
     /// The fingerprint of the text that was asked.
     hash: String,
@@ -30,11 +31,13 @@ pub(crate) struct Wish {
     run: Vec<Scan>,
     /// The ways in which the plant ticked.
     #[serde(default)]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
     chance: Vec<u8>,
 }
 
 /// The ways on from a refuted claim.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ProofWays", optional_fields))]
 pub(crate) struct Ways {
     cures: Vec<Cure>,
     /// The change that adds a test to the file, which fails as long as the claim does.
@@ -47,6 +50,7 @@ pub(crate) struct Ways {
 
 /// A test with the change that adds it.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Added {
     title: String,
     splices: Vec<Change>,
@@ -87,7 +91,7 @@ fn found(
         _ => Vec::new(),
     };
     if let Some((text, splice)) = (Refuted { file, model, question, run: &run, place }).assumed() {
-        cures.push(Cure::new("assume", vec![text], outward(file, &[splice])));
+        cures.push(Cure::new(Way::Assume, vec![text], outward(file, &[splice])));
     }
     let (test, untested) = match test(file, model, question, &run, bench) {
         Ok(test) => (Some(test), None),

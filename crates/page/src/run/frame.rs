@@ -13,8 +13,9 @@ use serde::Serialize;
 use super::running::Run;
 use super::sent::{Sent, Show};
 
-/// A frame. Steps, transitions, signals and bindings are numbered as in [`super::start::Started`].
+/// A frame. Steps, transitions, signals and bindings are numbered as in the description of the run.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 pub(crate) struct Frame {
     run: String,
     now_ms: f64,
@@ -29,35 +30,41 @@ pub(crate) struct Frame {
     #[serde(skip_serializing_if = "Option::is_none")]
     times: Option<BTreeMap<u32, f64>>,
     /// Enabled transitions: 0 not enabled, 1 enabled, 2 enabled and the receptivity is true.
+    #[cfg_attr(feature = "types", ts(type = "Array<[number, 0 | 1 | 2]>"))]
     enabled: Vec<(u32, u8)>,
     cleared: Vec<u32>,
     values: Vec<(u32, String, f64)>,
     forced: Vec<(u32, bool)>,
     view: Vec<(u32, Show)>,
     /// True between two passes of a scan.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     within: bool,
     /// True if the frame shows the present and not an earlier scan.
     live: bool,
     /// True if the run could not keep up with the requested time.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     late: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     stopped: Option<Stopped>,
     #[serde(skip_serializing_if = "Option::is_none")]
     halt: Option<Halted>,
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     notes: Vec<String>,
 }
 
 /// The breakpoint at which a run stopped.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Stopped {
     id: String,
 }
 
 /// The fault that ended a run, with its place in the text from which the run was started.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct Halted {
     what: String,
     ids: Vec<String>,

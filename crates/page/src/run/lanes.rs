@@ -10,6 +10,7 @@ use g7_rig::values::shown;
 
 /// The lanes of a chronogram.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Lanes {
     start_ms: f64,
     end_ms: f64,
@@ -19,6 +20,7 @@ pub(crate) struct Lanes {
 
 /// The format of a file of signals.
 #[derive(Clone, Copy, Debug, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "SignalsForm"))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Form {
     Csv,

@@ -22,11 +22,13 @@ mod swap;
 mod times;
 mod wish;
 
+pub(crate) use frame::Frame;
 pub use frame::show;
-pub(crate) use lanes::Form;
+pub(crate) use lanes::{Form, Lanes};
 pub use places::Places;
 pub(crate) use running::Run;
 pub(crate) use scans::Scan;
 pub use sent::Show;
-pub(crate) use start::start;
+pub(crate) use start::{Started, start};
+pub(crate) use swap::Swapped;
 pub(crate) use wish::{Start, profile};

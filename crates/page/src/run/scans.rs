@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// A scan of a run.
 #[derive(Clone, Debug, Deserialize, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ProofScan"))]
 pub(crate) struct Scan {
     /// The time since the scan before, ns.
     wait_ns: i64,

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 /// A value of the plant's picture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(untagged)]
 pub enum Show {
     /// A BOOL.

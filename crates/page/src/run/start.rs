@@ -17,6 +17,7 @@ use super::wish::{Start, bench};
 
 /// The description of a run: the names of the numbers in its frames.
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 pub(crate) struct Started {
     run: String,
     file: String,
@@ -37,11 +38,12 @@ pub(crate) struct Started {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct SignalRow {
     name: String,
-    role: &'static str,
+    role: SignalRole,
     #[serde(rename = "type")]
-    ty: &'static str,
+    ty: SignalType,
     declared: String,
     #[serde(skip_serializing_if = "Option::is_none")]
     comment: Option<String>,
@@ -51,6 +53,7 @@ struct SignalRow {
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "RunStep"))]
 struct StepRow {
     id: String,
     name: String,
@@ -62,18 +65,44 @@ struct StepRow {
     inner: bool,
 }
 
+/// The part that a signal plays.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum SignalRole {
+    Input,
+    Output,
+    Variable,
+    Plant,
+}
+
+/// The kinds of values.
+#[derive(Clone, Copy, Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+enum SignalType {
+    Bool,
+    Int,
+    Real,
+    Time,
+    Text,
+}
+
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct TransitionRow {
     id: String,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct View {
     file: String,
     bindings: Vec<Binding>,
 }
 
 #[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Binding {
     element: String,
     attribute: String,
@@ -125,17 +154,17 @@ impl Run {
         let signal = |item: &g7_rig::Item| SignalRow {
             name: item.name.clone(),
             role: match item.role {
-                Role::Input(_) => "input",
-                Role::Output => "output",
-                Role::Variable => "variable",
-                Role::Plant => "plant",
+                Role::Input(_) => SignalRole::Input,
+                Role::Output => SignalRole::Output,
+                Role::Variable => SignalRole::Variable,
+                Role::Plant => SignalRole::Plant,
             },
             ty: match item.kind {
-                Kind::Bool => "bool",
-                Kind::Int { .. } => "int",
-                Kind::Real | Kind::Lreal => "real",
-                Kind::Time => "time",
-                Kind::Text => "text",
+                Kind::Bool => SignalType::Bool,
+                Kind::Int { .. } => SignalType::Int,
+                Kind::Real | Kind::Lreal => SignalType::Real,
+                Kind::Time => SignalType::Time,
+                Kind::Text => SignalType::Text,
             },
             declared: item.ty.to_string(),
             comment: item.comment.clone(),

@@ -4,11 +4,24 @@ use std::sync::Arc;
 
 use g7_ide::Positions;
 use g7_rig::Source;
+use serde::Serialize;
 
 use super::past::Past;
 use super::places::Places;
 use super::running::{Breaks, Run, recording};
+use super::start::Started;
 use super::wish::bench;
+
+/// The answer to an on-line change.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(untagged)]
+pub(crate) enum Swapped {
+    /// The description of the new run.
+    Started(Box<Started>),
+    /// Nothing was changed, because this would be lost.
+    Lost { lost: Vec<String> },
+}
 
 impl Run {
     /// Continues the run with a changed text after the present scan. Returns what would be lost; if

@@ -10,6 +10,7 @@ use super::scans::Scan;
 
 /// The page's request to start a run.
 #[derive(Clone, Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "RunWish", optional_fields = nullable))]
 pub(crate) struct Start {
     pub(crate) file: String,
     pub(crate) run: String,
@@ -17,6 +18,7 @@ pub(crate) struct Start {
     scan_ms: Option<f64>,
     plant: Option<String>,
     #[serde(default)]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
     pub(super) seed: u64,
     /// A run to be repeated from the start, without the user.
     pub(super) moves: Option<Vec<Scan>>,
