@@ -20,8 +20,10 @@
 mod answer;
 mod drawing;
 mod edit;
+mod elsewhere;
 mod explain;
 mod export;
+mod import;
 mod language;
 mod merge;
 mod overview;

@@ -3,7 +3,8 @@
 use std::collections::BTreeMap;
 
 use crate::answer::{self, Answer, ok};
-use crate::explain::explain;
+use crate::elsewhere::{self, Lent, WHOLE};
+use crate::import::{self, Imported};
 use crate::language;
 use crate::merge::merge;
 use crate::overview::overview;
@@ -49,13 +50,18 @@ impl Page {
     fn answer(&mut self, request: Request) -> Answer {
         match request {
             Request::Open { file, text } => self.open(file, text),
+            Request::Import { file, text } if WHOLE => ok(&import::import(file, text, self.language)?),
+            Request::Imported(imported) => self.imported(imported),
             Request::Close { file } => {
                 self.files.remove(&file);
                 self.proofs.remove(&file);
                 self.shown.forget(&file);
                 ok(&())
             }
-            Request::Speak { language } => {
+            Request::Speak { language, words } => {
+                if let Some(words) = words {
+                    g7_model::said::teach(words);
+                }
                 self.language = Language::of(&language).unwrap_or_default();
                 for file in self.files.values_mut() {
                     file.language = self.language;
@@ -84,25 +90,21 @@ impl Page {
                 let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
                 self.shown.answer(&wish, drawn, |redrawn| ok(redrawn))
             }
-            Request::Forms => ok(&export::forms()),
-            Request::Export { file, to } => ok(&export::export(&file, self.file(&file)?, &to)?),
+            Request::Forms if WHOLE => ok(&export::forms()),
+            Request::Export { file, to } if WHOLE => ok(&export::export(&file, self.file(&file)?, &to)?),
             Request::Logic { file, id } => ok(&language::logic(self.file(&file)?, &id)?),
             Request::LogicRead { tongue, text } => {
                 ok(&serde_json::json!({ "text": language::logic_read(tongue, &text)? }))
             }
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
-            Request::Explain { code } => {
-                let text = explain(&code, g7_model::Language::English)
-                    .ok_or_else(|| format!("there is no problem `{code}`"))?;
-                ok(&serde_json::json!({ "markdown": text }))
-            }
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
-            Request::Prove { file, limits } => self.prove(&file, limits),
-            Request::ProveWays { file, wish } => ok(&prove::ways(self.file(&file)?, &wish)?),
-            Request::Compare(wish) => {
+            Request::Prove { file, limits } if WHOLE => self.prove(&file, limits),
+            Request::ProveWays { file, wish } if WHOLE => ok(&prove::ways(self.file(&file)?, &wish)?),
+            Request::Compare(wish) if WHOLE => {
                 let [a, b] = &wish.files;
                 ok(&prove::compared([self.file(a)?, self.file(b)?], &wish)?)
             }
+            Request::About { files, ask } if WHOLE => Page::about(files, *ask, self.language),
             Request::Before { file } => ok(&serde_json::json!({ "text": self.file(&file)?.before() })),
             Request::Tokens { file, from, to } => ok(&language::tokens(self.file(&file)?, from, to)),
             Request::Complete { file, at } => ok(&language::complete(self.file(&file)?, at)),
@@ -147,7 +149,34 @@ impl Page {
                 let text = self.run(&run)?.export(&signals, r#as, from_ms, to_ms)?;
                 ok(&serde_json::json!({ "text": text }))
             }
+            // What the module that the browser loads first does not contain. In the whole program the arms above
+            // answer.
+            rare @ (Request::Import { .. }
+            | Request::About { .. }
+            | Request::Forms
+            | Request::Export { .. }
+            | Request::Prove { .. }
+            | Request::ProveWays { .. }
+            | Request::Compare(_)) => self.elsewhere(&rare),
         }
+    }
+
+    /// Says that another module answers, and what it must know for that.
+    fn elsewhere(&self, rare: &Request) -> Answer {
+        let names = rare.files();
+        let lent = names.into_iter().map(|name| Ok(Lent::new(name, self.file(name)?)));
+        elsewhere::elsewhere(lent.collect::<Result<_, String>>()?, None)
+    }
+
+    /// Answers a question about files of another page, which are forgotten afterwards.
+    fn about(files: Vec<Lent>, ask: Request, language: Language) -> Answer {
+        let mut page = Page { language, ..Page::default() };
+        for lent in files {
+            let mut file = File::open_native(&lent.file, lent.text)?;
+            file.language = language;
+            page.files.insert(lent.file, file);
+        }
+        page.answer(ask)
     }
 
     fn file(&self, name: &str) -> Result<&File, String> {
@@ -163,10 +192,22 @@ impl Page {
     }
 
     fn open(&mut self, name: String, text: String) -> Answer {
+        if !WHOLE && g7_exchange::is_foreign(&name, text.as_bytes()) {
+            return elsewhere::elsewhere(Vec::new(), Some("import"));
+        }
+        let file = if WHOLE { File::open(&name, text)? } else { File::open_native(&name, text)? };
+        self.put(name, file)
+    }
+
+    fn imported(&mut self, imported: Imported) -> Answer {
+        let (name, file) = imported.file()?;
+        self.put(name, file)
+    }
+
+    fn put(&mut self, name: String, mut file: File) -> Answer {
         if self.files.len() >= MOST && !self.files.contains_key(&name) {
             return Err("too many files are open: close one".to_owned());
         }
-        let mut file = File::open(&name, text)?;
         file.language = self.language;
         let name = if file.imported { with_ending(&name) } else { name };
         self.files.insert(name.clone(), file);

@@ -10,12 +10,20 @@ pub(crate) enum Request {
         file: String,
         text: String,
     },
+    /// Converts a file of another tool; the answer is the message `imported`.
+    Import {
+        file: String,
+        text: String,
+    },
+    /// Opens what `import` has answered.
+    Imported(crate::import::Imported),
     Close {
         file: String,
     },
-    /// Chooses the language of the answers: `en`, `fr`, `pt`.
+    /// Chooses the language of the answers: `en`, `fr`, `pt`. A program without the texts in it is given them.
     Speak {
         language: String,
+        words: Option<String>,
     },
     Look {
         file: String,
@@ -80,9 +88,6 @@ pub(crate) enum Request {
         #[serde(default)]
         dark: bool,
     },
-    Explain {
-        code: String,
-    },
     /// Runs the tests whose titles contain `name`, or all.
     Test {
         file: String,
@@ -102,6 +107,11 @@ pub(crate) enum Request {
     },
     /// Compares two files for every sequence of inputs, as far as the limits go.
     Compare(crate::prove::Both),
+    /// A question about files that another page has open, with their texts.
+    About {
+        files: Vec<crate::elsewhere::Lent>,
+        ask: Box<Request>,
+    },
     /// The text before the last change.
     Before {
         file: String,
