@@ -10,8 +10,8 @@ const DIST = resolve(process.env.G7_DIST ?? join(HERE, 'dist'));
 const FILES = join(HERE, '../tests/interchange');
 
 type Message = { do: string } & Record<string, unknown>;
-type Answer = { ok?: unknown; no?: string; elsewhere?: { files: { file: string; text: string }[]; as?: string } };
-type Call = (message: Message) => Answer;
+type Answer = { ok?: unknown; no?: string; elsewhere?: { as: string; files: { file: string; text: string }[] } };
+type Call = (message: object) => Answer;
 
 /** A module of its own, with one page. */
 async function load(name: string): Promise<Call> {
@@ -55,10 +55,9 @@ before(async () => {
 function asked(message: Message): Answer {
   const answer = first(message);
   if (!answer.elsewhere) return answer;
-  const { files, as } = answer.elsewhere;
-  if (!as) return whole({ do: 'about', files, ask: message });
-  const made = whole({ ...message, do: as });
-  return made.no === undefined ? first(made.ok as Message) : made;
+  const { as, files } = answer.elsewhere;
+  const there = whole({ between: as, files, ask: message });
+  return as === 'import' && there.no === undefined ? first(there.ok as object) : there;
 }
 
 const RARE: Message[] = [

@@ -18,12 +18,11 @@
 #![deny(unsafe_code)]
 
 mod answer;
+mod between;
 mod drawing;
 mod edit;
-mod elsewhere;
 mod explain;
 mod export;
-mod import;
 mod language;
 mod merge;
 mod overview;

@@ -3,8 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::answer::{self, Answer, ok};
-use crate::elsewhere::{self, Lent, WHOLE};
-use crate::import::{self, Imported};
+use crate::between::{self, Between, Lent, whole};
 use crate::language;
 use crate::merge::merge;
 use crate::overview::overview;
@@ -41,8 +40,11 @@ impl Page {
     /// Answers a message with `{"ok":…}` or with `{"no":"a sentence for the user"}`.
     pub fn call(&mut self, message: &str) -> String {
         let answer = match serde_json::from_str(message) {
-            Ok(request) => self.answer(request),
-            Err(e) => Err(format!("this message means nothing: {e}")),
+            Ok(request) => self.here_or_there(request),
+            Err(e) => match serde_json::from_str(message) {
+                Ok(between) => self.between(between),
+                Err(_) => Err(format!("this message means nothing: {e}")),
+            },
         };
         answer::text(answer)
     }
@@ -50,8 +52,6 @@ impl Page {
     fn answer(&mut self, request: Request) -> Answer {
         match request {
             Request::Open { file, text } => self.open(file, text),
-            Request::Import { file, text } if WHOLE => ok(&import::import(file, text, self.language)?),
-            Request::Imported(imported) => self.imported(imported),
             Request::Close { file } => {
                 self.files.remove(&file);
                 self.proofs.remove(&file);
@@ -90,21 +90,27 @@ impl Page {
                 let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
                 self.shown.answer(&wish, drawn, |redrawn| ok(redrawn))
             }
-            Request::Forms if WHOLE => ok(&export::forms()),
-            Request::Export { file, to } if WHOLE => ok(&export::export(&file, self.file(&file)?, &to)?),
+            Request::Forms => whole().and_then(|()| ok(&export::forms())),
+            Request::Export { file, to } => {
+                whole()?;
+                ok(&export::export(&file, self.file(&file)?, &to)?)
+            }
             Request::Logic { file, id } => ok(&language::logic(self.file(&file)?, &id)?),
             Request::LogicRead { tongue, text } => {
                 ok(&serde_json::json!({ "text": language::logic_read(tongue, &text)? }))
             }
             Request::Style { dark } => ok(&serde_json::json!({ "css": g7_draw::style(dark) })),
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
-            Request::Prove { file, limits } if WHOLE => self.prove(&file, limits),
-            Request::ProveWays { file, wish } if WHOLE => ok(&prove::ways(self.file(&file)?, &wish)?),
-            Request::Compare(wish) if WHOLE => {
+            Request::Prove { file, limits } => self.prove(&file, limits),
+            Request::ProveWays { file, wish } => {
+                whole()?;
+                ok(&prove::ways(self.file(&file)?, &wish)?)
+            }
+            Request::Compare(wish) => {
+                whole()?;
                 let [a, b] = &wish.files;
                 ok(&prove::compared([self.file(a)?, self.file(b)?], &wish)?)
             }
-            Request::About { files, ask } if WHOLE => Page::about(files, *ask, self.language),
             Request::Before { file } => ok(&serde_json::json!({ "text": self.file(&file)?.before() })),
             Request::Tokens { file, from, to } => ok(&language::tokens(self.file(&file)?, from, to)),
             Request::Complete { file, at } => ok(&language::complete(self.file(&file)?, at)),
@@ -149,34 +155,43 @@ impl Page {
                 let text = self.run(&run)?.export(&signals, r#as, from_ms, to_ms)?;
                 ok(&serde_json::json!({ "text": text }))
             }
-            // What the module that the browser loads first does not contain. In the whole program the arms above
-            // answer.
-            rare @ (Request::Import { .. }
-            | Request::About { .. }
-            | Request::Forms
-            | Request::Export { .. }
-            | Request::Prove { .. }
-            | Request::ProveWays { .. }
-            | Request::Compare(_)) => self.elsewhere(&rare),
         }
     }
 
-    /// Says that another module answers, and what it must know for that.
-    fn elsewhere(&self, rare: &Request) -> Answer {
-        let names = rare.files();
-        let lent = names.into_iter().map(|name| Ok(Lent::new(name, self.file(name)?)));
-        elsewhere::elsewhere(lent.collect::<Result<_, String>>()?, None)
+    /// Answers a request, or says that the other module does.
+    fn here_or_there(&mut self, request: Request) -> Answer {
+        let names = request.files();
+        match self.answer(request) {
+            Err(no) if no == between::ELSEWHERE => {
+                let lent = names.iter().map(|name| Ok(Lent::new(name, self.file(name)?)));
+                between::elsewhere("about", lent.collect::<Result<_, String>>()?)
+            }
+            Err(no) if no == between::FOREIGN => between::elsewhere("import", Vec::new()),
+            answer => answer,
+        }
     }
 
-    /// Answers a question about files of another page, which are forgotten afterwards.
-    fn about(files: Vec<Lent>, ask: Request, language: Language) -> Answer {
-        let mut page = Page { language, ..Page::default() };
-        for lent in files {
-            let mut file = File::open_native(&lent.file, lent.text)?;
-            file.language = language;
-            page.files.insert(lent.file, file);
+    /// Answers a message that comes from the other module.
+    fn between(&mut self, message: Between) -> Answer {
+        match message {
+            Between::About { files, ask } => {
+                whole()?;
+                let mut page = Page { language: self.language, ..Page::default() };
+                for lent in files {
+                    let file = lent.file(page.language)?;
+                    page.files.insert(lent.file, file);
+                }
+                page.answer(ask)
+            }
+            Between::Import { ask } => {
+                whole()?;
+                ok(&between::import(ask, self.language)?)
+            }
+            Between::Imported(imported) => {
+                let (name, file) = imported.file()?;
+                self.put(name, file)
+            }
         }
-        page.answer(ask)
     }
 
     fn file(&self, name: &str) -> Result<&File, String> {
@@ -192,15 +207,7 @@ impl Page {
     }
 
     fn open(&mut self, name: String, text: String) -> Answer {
-        if !WHOLE && g7_exchange::is_foreign(&name, text.as_bytes()) {
-            return elsewhere::elsewhere(Vec::new(), Some("import"));
-        }
-        let file = if WHOLE { File::open(&name, text)? } else { File::open_native(&name, text)? };
-        self.put(name, file)
-    }
-
-    fn imported(&mut self, imported: Imported) -> Answer {
-        let (name, file) = imported.file()?;
+        let file = between::open(&name, text)?;
         self.put(name, file)
     }
 
@@ -219,6 +226,7 @@ impl Page {
     }
 
     fn prove(&mut self, name: &str, limits: prove::Limits) -> Answer {
+        whole()?;
         let known = self.proofs.remove(name);
         let (proof, report) = prove::prove(self.file(name)?, known, limits);
         self.proofs.insert(name.to_owned(), proof);

@@ -10,13 +10,6 @@ pub(crate) enum Request {
         file: String,
         text: String,
     },
-    /// Converts a file of another tool; the answer is the message `imported`.
-    Import {
-        file: String,
-        text: String,
-    },
-    /// Opens what `import` has answered.
-    Imported(crate::import::Imported),
     Close {
         file: String,
     },
@@ -107,11 +100,6 @@ pub(crate) enum Request {
     },
     /// Compares two files for every sequence of inputs, as far as the limits go.
     Compare(crate::prove::Both),
-    /// A question about files that another page has open, with their texts.
-    About {
-        files: Vec<crate::elsewhere::Lent>,
-        ask: Box<Request>,
-    },
     /// The text before the last change.
     Before {
         file: String,

@@ -70,9 +70,9 @@ fn messages(text: &str) -> Vec<Value> {
         json!({ "do": "run_restart", "run": "r" }),
         json!({ "do": "run_stop", "run": "r" }),
         json!({ "do": "close", "file": file }),
-        json!({ "do": "import", "file": "a.xml", "text": PUMP }),
-        json!({ "do": "imported", "file": "a.xml", "text": text, "told": [{ "code": "G0111", "what": "it ends" }] }),
-        json!({ "do": "about", "files": [{ "file": file, "text": text }], "ask": { "do": "look", "file": file } }),
+        json!({ "between": "import", "ask": { "do": "open", "file": "a.xml", "text": PUMP } }),
+        json!({ "between": "imported", "file": "a.xml", "text": text, "told": [{ "code": "G0111", "what": "it ends" }] }),
+        json!({ "between": "about", "files": [{ "file": file, "text": text }], "ask": { "do": "look", "file": file } }),
     ]
 }
 
@@ -109,8 +109,9 @@ fn distorted_messages_do_no_harm() {
         let mut page = Page::new();
         for mut message in messages(&example("bead-sorter/chart.g7")) {
             if let Some(fields) = message.as_object_mut() {
-                let keys: Vec<String> = fields.keys().filter(|k| *k != "do").cloned().collect();
-                if !keys.is_empty() && chance.below(2) == 0 && fields["do"] != "open" {
+                let keys: Vec<String> =
+                    fields.keys().filter(|k| *k != "do" && *k != "between").cloned().collect();
+                if !keys.is_empty() && chance.below(2) == 0 && fields.get("do") != Some(&json!("open")) {
                     fields.insert(chance.one(&keys).clone(), chance.one(&odd).clone());
                 }
             }

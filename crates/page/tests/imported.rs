@@ -67,7 +67,7 @@ fn what_one_page_converts_another_opens_as_if_it_had_read_the_file() {
         if opened.as_ref().is_ok_and(|look| look["imported"] != true) {
             continue;
         }
-        match two.ask(json!({ "do": "import", "file": name, "text": text })) {
+        match two.ask(json!({ "between": "import", "ask": { "file": name, "text": text } })) {
             Ok(message) => {
                 let again = Asked::default().ok(message.clone());
                 let shown =
@@ -96,7 +96,7 @@ fn a_question_about_lent_files_is_answered_and_leaves_nothing_open() {
     let mut page = Asked::default();
     let text = "chart G {\n  initial step 1\n}\n";
     let lent = json!([{ "file": "a.g7", "text": text }]);
-    let mut about = |ask: Value| page.ask(json!({ "do": "about", "files": lent, "ask": ask }));
+    let mut about = |ask: Value| page.ask(json!({ "between": "about", "files": lent, "ask": ask }));
     let looked = about(json!({ "do": "look", "file": "a.g7" })).expect("it is open there");
     assert_eq!(looked["charts"][0]["name"], "G");
     assert_eq!(about(json!({ "do": "look", "file": "b.g7" })), Err("b.g7 is not open".to_owned()));

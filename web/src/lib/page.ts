@@ -23,13 +23,13 @@ export type Module = 'g7.wasm' | 'g7-whole.wasm';
 
 /** What the first module says of a question that the second one answers. */
 interface Elsewhere {
+  /** The message by which it is asked. */
+  as: 'about' | 'import';
   files: { file: string; text: string }[];
-  /** The word under which it is asked there; the answer is then a message for the first module. */
-  as?: string;
 }
 
 interface Waiting {
-  message: Message;
+  message: object;
   resolve(value: unknown): void;
   reject(reason: Error): void;
 }
@@ -59,7 +59,7 @@ export class Local implements Answers {
     return this.#ask(message) as Promise<T>;
   }
 
-  #ask(message: Message): Promise<unknown> {
+  #ask(message: object): Promise<unknown> {
     const worker = (this.#worker ??= this.#start());
     const language = untrack(() => prefs.language);
     if (this.#language !== language) {
@@ -89,11 +89,11 @@ export class Local implements Answers {
     return worker;
   }
 
-  /** Asks the second module. */
-  async #elsewhere(message: Message, { files, as }: Elsewhere): Promise<unknown> {
+  /** Asks the second module. What it has converted, the first one opens. */
+  async #elsewhere(ask: object, { as, files }: Elsewhere): Promise<unknown> {
     this.#whole ??= new Local('g7-whole.wasm');
-    if (!as) return this.#whole.#ask({ do: 'about', files, ask: message });
-    return this.#ask((await this.#whole.#ask({ ...message, do: as })) as Message);
+    const answer = await this.#whole.#ask({ between: as, files, ask });
+    return as === 'import' ? this.#ask(answer as object) : answer;
   }
 
   /** Ends the worker, whatever it is doing; all messages under way fail, and its files are gone. */
