@@ -9,7 +9,7 @@
 //! The browser loads a module without readers and printers of other tools and without proofs, which most visits
 //! do not need; the second one is the whole program, loaded when a question needs it. The server has the
 //! whole program, so it never answers this way. What the first module does not contain is decided where it is
-//! answered, by [`whole`]: what stands behind it the linker leaves out.
+//! answered, by [`not_here`].
 
 use g7_ide::{File, convert};
 use g7_model::{FileId, Language, Problem, Said, Span, codes};
@@ -19,17 +19,17 @@ use crate::answer::Answer;
 use crate::request::Request;
 
 /// True in the program that answers everything itself.
-const WHOLE: bool = cfg!(feature = "whole");
+pub(crate) const WHOLE: bool = cfg!(feature = "whole");
 
 /// Why the first module does not answer: the second one does.
 pub(crate) const ELSEWHERE: &str = "the other module answers this";
 /// Why the first module does not open a file: the second one converts it.
 pub(crate) const FOREIGN: &str = "the other module reads this file";
 
-/// Stands before what only the whole program contains.
-#[inline]
-pub(crate) fn whole() -> Result<(), String> {
-    if WHOLE { Ok(()) } else { Err(ELSEWHERE.to_owned()) }
+/// The refusal of what only the whole program contains: `if !WHOLE { return not_here(); }`. What follows is out of
+/// reach in the first module, so the compiler leaves it out with all that it alone needs.
+pub(crate) fn not_here<T>() -> Result<T, String> {
+    Err(ELSEWHERE.to_owned())
 }
 
 /// A message from the other module. It has the word `between` in the place of `do`.

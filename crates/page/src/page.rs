@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use crate::answer::{self, Answer, ok};
-use crate::between::{self, Between, Lent, whole};
+use crate::between::{self, Between, Lent, WHOLE};
 use crate::language;
 use crate::merge::merge;
 use crate::overview::overview;
@@ -90,9 +90,16 @@ impl Page {
                 let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
                 self.shown.answer(&wish, drawn, |redrawn| ok(redrawn))
             }
-            Request::Forms => whole().and_then(|()| ok(&export::forms())),
+            Request::Forms => {
+                if !WHOLE {
+                    return between::not_here();
+                }
+                ok(&export::forms())
+            }
             Request::Export { file, to } => {
-                whole()?;
+                if !WHOLE {
+                    return between::not_here();
+                }
                 ok(&export::export(&file, self.file(&file)?, &to)?)
             }
             Request::Logic { file, id } => ok(&language::logic(self.file(&file)?, &id)?),
@@ -103,11 +110,15 @@ impl Page {
             Request::Test { file, name } => ok(&testing::test(self.file(&file)?, name.as_deref())?),
             Request::Prove { file, limits } => self.prove(&file, limits),
             Request::ProveWays { file, wish } => {
-                whole()?;
+                if !WHOLE {
+                    return between::not_here();
+                }
                 ok(&prove::ways(self.file(&file)?, &wish)?)
             }
             Request::Compare(wish) => {
-                whole()?;
+                if !WHOLE {
+                    return between::not_here();
+                }
                 let [a, b] = &wish.files;
                 ok(&prove::compared([self.file(a)?, self.file(b)?], &wish)?)
             }
@@ -175,7 +186,9 @@ impl Page {
     fn between(&mut self, message: Between) -> Answer {
         match message {
             Between::About { files, ask } => {
-                whole()?;
+                if !WHOLE {
+                    return between::not_here();
+                }
                 let mut page = Page { language: self.language, ..Page::default() };
                 for lent in files {
                     let file = lent.file(page.language)?;
@@ -184,7 +197,9 @@ impl Page {
                 page.answer(ask)
             }
             Between::Import { ask } => {
-                whole()?;
+                if !WHOLE {
+                    return between::not_here();
+                }
                 ok(&between::import(ask, self.language)?)
             }
             Between::Imported(imported) => {
@@ -226,7 +241,9 @@ impl Page {
     }
 
     fn prove(&mut self, name: &str, limits: prove::Limits) -> Answer {
-        whole()?;
+        if !WHOLE {
+            return between::not_here();
+        }
         let known = self.proofs.remove(name);
         let (proof, report) = prove::prove(self.file(name)?, known, limits);
         self.proofs.insert(name.to_owned(), proof);
