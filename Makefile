@@ -29,7 +29,7 @@ CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
 STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 NODE := $(PYTHON)/node
-PAGE := $(shell find web/src docs/book/fr docs/book/pt web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
+PAGE := $(shell find web/src docs/book/src/problems docs/book/fr docs/book/pt crates/model/src/said web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
 # The extension for VS Code; its packages are pinned by its lock.
 EXTENSION := editors/vscode
@@ -187,19 +187,23 @@ deny:
 WASM := wasm
 MODULE = $${CARGO_TARGET_DIR:-target}/wasm32-unknown-unknown/$(WASM)/g7_page.wasm
 
-## the crates as wasm, for the page
-wasm: web/public/g7.wasm
+# Two modules of one crate (decision 55): what the page loads at once, and the whole program.
+MODULES := web/public/g7.wasm web/public/g7-whole.wasm
 
-web/public/g7.wasm: FORCE
+## the crates as wasm, for the page
+wasm: $(MODULES)
+
+web/public/g7.wasm: PARTS := --no-default-features
+$(MODULES): FORCE
 	@rustup target list --installed | grep -q wasm32-unknown-unknown || rustup target add wasm32-unknown-unknown
-	cargo build --quiet --profile $(WASM) --target wasm32-unknown-unknown --package g7-page
+	cargo build --quiet --profile $(WASM) --target wasm32-unknown-unknown --package g7-page $(PARTS)
 	@mkdir -p web/public
 	@cmp -s $(MODULE) $@ || cp $(MODULE) $@
 
 ## the editor's page, built into g7
 web: web/dist/index.html
 
-web/dist/index.html: web/public/g7.wasm web/node_modules/.package-lock.json $(PAGE)
+web/dist/index.html: $(MODULES) web/node_modules/.package-lock.json $(PAGE)
 	cd web && WASM=$(WASM) npm run --silent build
 
 web/node_modules/.package-lock.json: web/package.json web/package-lock.json

@@ -20,5 +20,7 @@ for (const path of paths) {
     [constants.BROTLI_PARAM_LGWIN]: constants.BROTLI_MAX_WINDOW_BITS,
     [constants.BROTLI_PARAM_SIZE_HINT]: bytes.length,
   };
-  writeFileSync(`${packed}.br`, brotliCompressSync(bytes, { params }));
+  const brotli = brotliCompressSync(bytes, { params });
+  writeFileSync(`${packed}.br`, brotli);
+  if (!quick && path.endsWith('.wasm')) console.log(`${path}: ${(brotli.length / 1e6).toFixed(3)} MB as Brotli`);
 }

@@ -1,7 +1,7 @@
-//! Builds a list of the book's pages on problems, which the editor and `g7 explain` contain.
+//! Builds a list of the book's pages on problems, which `g7 explain` and the language server print.
 //!
-//! They stand in `docs/book` in three languages. The page in the browser fetches those in French and
-//! Portuguese when they are asked for (`web/src/text/explain.ts`), so its module has the English ones alone.
+//! They stand in `docs/book` in three languages. The page fetches them itself when they are asked for
+//! (`web/src/text/explain.ts`), so its modules of wasm use nothing of the list and do not contain it.
 
 use std::fmt::Write;
 use std::path::Path;
@@ -12,9 +12,8 @@ const LANGUAGES: [(&str, &str); 3] = [("en", "src/problems"), ("fr", "fr/problem
 
 fn main() {
     let root = env::var("CARGO_MANIFEST_DIR").unwrap_or_default();
-    let in_browser = env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32");
     let mut table = String::from("&[\n");
-    for (language, folder) in LANGUAGES.into_iter().take(if in_browser { 1 } else { LANGUAGES.len() }) {
+    for (language, folder) in LANGUAGES {
         list(language, &Path::new(&root).join("../../docs/book").join(folder), &mut table);
     }
     table.push(']');

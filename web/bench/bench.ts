@@ -1,9 +1,13 @@
 // Compares the editor with React Flow for the same charts, in one session: `npm run bench` in web/. Prints
 // the times as a table and their ratios to those of React Flow with 1000 steps, visible only; fails if a
 // ratio exceeds its limit. A limit in ms would tell of the machine.
+import { readFileSync } from 'node:fs';
+import { brotliCompressSync, constants } from 'node:zlib';
 import type { Browser, CDPSession, Page } from 'playwright-core';
 import { browser, playground } from '../tests/lib';
 
+/** The greatest size of the module that the page loads at once, as Brotli, in bytes (decision 55). */
+const MODULE = 1_000_000;
 const SIZE = { width: 1600, height: 900 };
 const TICKS = 75;
 const MOVES = 60;
@@ -237,6 +241,12 @@ for (const [name, file, steps, own] of cases) {
   console.log(`| ${name} | ${[r.first, r.all, r.heap, r.tick, r.whole, r.run, r.pan, r.insert, r.insertTime].map(shown).join(' | ')} |`);
 }
 await site.stop();
+
+const loaded = readFileSync(new URL('../public/g7.wasm', import.meta.url));
+const packed = brotliCompressSync(loaded, { params: { [constants.BROTLI_PARAM_LGWIN]: constants.BROTLI_MAX_WINDOW_BITS, [constants.BROTLI_PARAM_SIZE_HINT]: loaded.length } }).length;
+const heavy = packed > MODULE;
+console.log(`\ng7.wasm: ${(packed / 1e6).toFixed(3)} MB as Brotli, limit ${(MODULE / 1e6).toFixed(3)}${heavy ? ', over' : ''}.`);
+if (heavy) process.exitCode = 1;
 
 const [ours, theirs] = [rows.get('G7, 1000 steps'), rows.get(flow)];
 if (ours && theirs) {

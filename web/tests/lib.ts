@@ -26,6 +26,8 @@ const TYPES: Record<string, string> = {
 
 export interface Site {
   url: string;
+  /** The names of the files that were asked for, in their order; of the playground only. */
+  fetched?: string[];
   stop(): Promise<void>;
   /** Kills the server without a clean end. */
   crash?(): Promise<void>;
@@ -33,8 +35,10 @@ export interface Site {
 
 /** The static playground, with these files as its examples. */
 export async function playground(examples: Record<string, string>): Promise<Site> {
+  const fetched: string[] = [];
   const server = createServer((request, response) => {
     const path = normalize(new URL(request.url ?? '/', 'http://localhost').pathname);
+    fetched.push(path.slice(1));
     if (path === '/examples.json') {
       response.writeHead(200, { 'content-type': 'application/json' }).end(JSON.stringify(examples));
       return;
@@ -47,6 +51,7 @@ export async function playground(examples: Record<string, string>): Promise<Site
   await new Promise<void>((done) => server.listen(0, '127.0.0.1', done));
   return {
     url: `http://127.0.0.1:${(server.address() as AddressInfo).port}/`,
+    fetched,
     stop: async () => {
       server.closeAllConnections();
       await new Promise((done) => server.close(done));

@@ -37,4 +37,4 @@ mod xmi;
 pub use g7_iec::Written;
 pub use g7_iec::plcopen::Dialect;
 
-pub use registry::{FORMATS, Format, named, recognise};
+pub use registry::{FORMATS, Format, is_foreign, named, recognise};

@@ -28,19 +28,33 @@ pub struct Format {
     pub title: &'static str,
     /// The endings of its files, without the dot; the first is that of a file that is written.
     pub endings: &'static [&'static str],
-    reader: Option<(Fits, Read)>,
+    reader: Option<Read>,
     writer: Option<Write>,
     in_dialect: Option<fn(&Document, Dialect) -> Written>,
 }
 
-/// All formats, in the order in which a file is asked.
+/// How a file of each format that is read is recognised, by the word of the format, in the order in which a file
+/// is asked. It stands apart from the readers, so that a program can tell that a file is foreign without them.
+static SIGNS: [(&str, Fits); 8] = [
+    ("jgrafchart", jgrafchart::fits),
+    ("plcopen", plcopen::fits),
+    ("xmi", xmi::fits),
+    ("classicladder", classicladder::fits),
+    ("controlexpert", controlexpert::fits),
+    ("s7graph", s7graph::fits),
+    ("l5x", l5x::fits),
+    // The last one, because it is recognised by the name's ending too.
+    ("sfc", sfc::fits),
+];
+
+/// All formats, in the order in which they are shown.
 pub static FORMATS: [Format; 9] = [
     // JGrafchart 2.x, `saveVersion` up to 8.
     Format {
         word: "jgrafchart",
         title: "JGrafchart",
         endings: &["xml"],
-        reader: Some((jgrafchart::fits, jgrafchart::import)),
+        reader: Some(jgrafchart::import),
         writer: Some(jgrafchart::export),
         in_dialect: None,
     },
@@ -49,7 +63,7 @@ pub static FORMATS: [Format; 9] = [
         word: "plcopen",
         title: "PLCopen XML",
         endings: &["xml"],
-        reader: Some((plcopen::fits, plcopen::import)),
+        reader: Some(plcopen::import),
         writer: Some(plcopen::export),
         in_dialect: Some(plcopen::export_for),
     },
@@ -58,7 +72,7 @@ pub static FORMATS: [Format; 9] = [
         word: "xmi",
         title: "XMI",
         endings: &["grafcet", "xmi"],
-        reader: Some((xmi::fits, xmi::import)),
+        reader: Some(xmi::import),
         writer: Some(xmi::export),
         in_dialect: None,
     },
@@ -67,7 +81,7 @@ pub static FORMATS: [Format; 9] = [
         word: "classicladder",
         title: "ClassicLadder",
         endings: &["clp", "clprj"],
-        reader: Some((classicladder::fits, classicladder::import)),
+        reader: Some(classicladder::import),
         writer: None,
         in_dialect: None,
     },
@@ -76,7 +90,7 @@ pub static FORMATS: [Format; 9] = [
         word: "controlexpert",
         title: "Control Expert",
         endings: &["xsf", "xef"],
-        reader: Some((controlexpert::fits, controlexpert::import)),
+        reader: Some(controlexpert::import),
         writer: None,
         in_dialect: None,
     },
@@ -85,7 +99,7 @@ pub static FORMATS: [Format; 9] = [
         word: "s7graph",
         title: "S7-GRAPH",
         endings: &["xml"],
-        reader: Some((s7graph::fits, s7graph::import)),
+        reader: Some(s7graph::import),
         writer: None,
         in_dialect: None,
     },
@@ -94,17 +108,16 @@ pub static FORMATS: [Format; 9] = [
         word: "l5x",
         title: "Logix L5X",
         endings: &["l5x"],
-        reader: Some((l5x::fits, l5x::import)),
+        reader: Some(l5x::import),
         writer: None,
         in_dialect: None,
     },
-    // IEC 61131-3 in text. It is the last one that is read, because it is recognised by the name's
-    // ending too.
+    // IEC 61131-3 in text.
     Format {
         word: "sfc",
         title: "IEC 61131-3 text",
         endings: sfc::ENDINGS,
-        reader: Some((sfc::fits, sfc::import)),
+        reader: Some(sfc::import),
         writer: Some(sfc::export),
         in_dialect: None,
     },
@@ -140,7 +153,7 @@ impl Format {
     /// Always returns a document with everything that could be read, and the problems in the order
     /// of the file.
     pub fn read(&self, bytes: &[u8], file: FileId) -> Option<(Document, Vec<Problem>)> {
-        self.reader.map(|(_, read)| read(bytes, file))
+        self.reader.map(|read| read(bytes, file))
     }
 
     /// Writes a document, which must have been read without errors; None if the format is not
@@ -165,6 +178,27 @@ pub fn named(word: &str) -> Option<&'static Format> {
 /// A file in UTF-16 is recognised too, so that its reader can report the encoding. None means that
 /// the format is unknown, and the file is taken for a .g7 file. `name` may be empty or any path.
 pub fn recognise(name: &str, bytes: &[u8]) -> Option<&'static Format> {
+    named(word_of(name, bytes)?)
+}
+
+/// True if [`recognise`] finds a format. Brings none of the readers with it.
+pub fn is_foreign(name: &str, bytes: &[u8]) -> bool {
+    word_of(name, bytes).is_some()
+}
+
+fn word_of(name: &str, bytes: &[u8]) -> Option<&'static str> {
     let root = xml::root_name(bytes);
-    FORMATS.iter().find(|f| f.reader.is_some_and(|(fits, _)| fits(name, root.as_deref(), bytes)))
+    SIGNS.iter().find(|(_, fits)| fits(name, root.as_deref(), bytes)).map(|(word, _)| *word)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_format_that_is_read_has_a_sign_and_no_other_has() {
+        let signs: Vec<&str> = SIGNS.iter().map(|(word, _)| *word).collect();
+        let read: Vec<&str> = FORMATS.iter().filter(|f| f.is_read()).map(|f| f.word).collect();
+        assert_eq!(signs, read);
+    }
 }

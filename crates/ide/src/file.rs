@@ -35,29 +35,18 @@ impl File {
     /// Reads a text; a file of a foreign format is converted to .g7 text.
     pub fn open(name: &str, text: String) -> Result<File, String> {
         fits(name, &text)?;
-        let mut source = Source::new(name, text.into_bytes(), 0);
-        let imported = source.format.is_some();
-        let mut told = Vec::new();
-        if imported {
-            if source.has_errors() {
-                let why = source.problems.first().map_or(String::new(), |p| format!(": {}", p.what));
-                return Err(format!("{name} cannot be imported{why}"));
-            }
-            // The importer's problems are kept without their places, which do not exist in the new
-            // text.
-            told = std::mem::take(&mut source.problems);
-            g7_draw::make_room(&mut source.document);
-            let text = g7_syntax::print(&source.document, None);
-            source = Source::native(name, text.into_bytes(), 0);
+        let source = Source::new(name, text.into_bytes(), 0);
+        match source.format {
+            Some(_) => converted(source).and_then(|(text, told)| File::imported(name, text, told)),
+            None => Ok(File::of(source, false)),
         }
-        let mut file = File::of(source, imported);
-        let nowhere = Span { file: FileId(0), start: 0, end: 0 };
-        file.problems.extend(told.into_iter().map(|p| Problem {
-            at: nowhere,
-            related: Vec::new(),
-            fixes: Vec::new(),
-            ..p
-        }));
+    }
+
+    /// Reads the .g7 text that [`convert`] made of a foreign file, with the problems that it told.
+    pub fn imported(name: &str, text: String, told: Vec<Problem>) -> Result<File, String> {
+        fits(name, &text)?;
+        let mut file = File::of(Source::native(name, text.into_bytes(), 0), true);
+        file.problems.extend(told);
         Ok(file)
     }
 
@@ -222,6 +211,25 @@ impl File {
             None => self.present(false),
         }
     }
+}
+
+/// Converts a foreign file: its .g7 text, and the problems that its reader found.
+pub fn convert(name: &str, text: String) -> Result<(String, Vec<Problem>), String> {
+    fits(name, &text)?;
+    converted(Source::new(name, text.into_bytes(), 0))
+}
+
+fn converted(mut source: Source) -> Result<(String, Vec<Problem>), String> {
+    if source.has_errors() {
+        let why = source.problems.first().map_or(String::new(), |p| format!(": {}", p.what));
+        return Err(format!("{} cannot be imported{why}", source.name));
+    }
+    g7_draw::make_room(&mut source.document);
+    let text = g7_syntax::print(&source.document, None);
+    // The problems are kept without their places, which do not exist in the new text.
+    let at = Span { file: FileId(0), start: 0, end: 0 };
+    let placeless = |p: Problem| Problem { at, related: Vec::new(), fixes: Vec::new(), ..p };
+    Ok((text, source.problems.into_iter().map(placeless).collect()))
 }
 
 /// Refuses a text that is too long, under the name of what it belongs to.

@@ -40,13 +40,6 @@ pub(crate) struct Style {
     pub(crate) css: String,
 }
 
-/// A page of the book.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-pub(crate) struct Explained {
-    pub(crate) markdown: String,
-}
-
 /// The breakpoints of a run.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]

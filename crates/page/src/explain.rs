@@ -2,8 +2,7 @@
 
 use g7_model::{Language, codes};
 
-/// The pages, each with its language and its problem code. A module for browsers has the English ones alone:
-/// the page fetches the others.
+/// The pages, each with its language and its problem code.
 static PAGES: &[(&str, &str, &str)] = include!(concat!(env!("OUT_DIR"), "/pages.rs"));
 
 /// The page on a problem (`G0101`, in upper or lower case), with the source of the rule; the English one where

@@ -18,6 +18,7 @@
 #![deny(unsafe_code)]
 
 mod answer;
+mod between;
 mod drawing;
 mod edit;
 mod explain;

@@ -7,9 +7,9 @@ use g7_ide::File;
 use g7_ide::gestures;
 use g7_model::Language;
 
-use crate::answer::{self, Before, Breaks, Explained, Style, Text};
+use crate::answer::{self, Answer, Before, Breaks, Style, Text, ok};
+use crate::between::{self, Between, Lent, WHOLE};
 use crate::edit::{self, Edited};
-use crate::explain::explain;
 use crate::export::{self, Form, Out};
 use crate::language::{self, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::{Merged, merge};
@@ -44,10 +44,64 @@ impl Page {
     /// Answers a message with `{"ok":…}` or with `{"no":"a sentence for the user"}`.
     pub fn call(&mut self, message: &str) -> String {
         let answer = match serde_json::from_str::<Request>(message) {
-            Ok(request) => Answers::answer(self, request),
-            Err(e) => Err(format!("this message means nothing: {e}")),
+            Ok(request) => self.here_or_there(request),
+            Err(e) => match serde_json::from_str(message) {
+                Ok(between) => self.between(between),
+                Err(_) => Err(format!("this message means nothing: {e}")),
+            },
         };
         answer::text(answer)
+    }
+
+    /// Answers a request, or says that the other module does.
+    fn here_or_there(&mut self, request: Request) -> Answer {
+        let names = request.files();
+        match self.answer(request) {
+            Err(no) if no == between::ELSEWHERE => {
+                let lent = names.iter().map(|name| Ok(Lent::new(name, self.file(name)?)));
+                between::elsewhere("about", lent.collect::<Result<_, String>>()?)
+            }
+            Err(no) if no == between::FOREIGN => between::elsewhere("import", Vec::new()),
+            answer => answer,
+        }
+    }
+
+    /// Answers a message that comes from the other module.
+    fn between(&mut self, message: Between) -> Answer {
+        match message {
+            Between::About { files, ask } => {
+                if !WHOLE {
+                    return between::not_here();
+                }
+                let mut page = Page { language: self.language, ..Page::default() };
+                for lent in files {
+                    let file = lent.file(page.language)?;
+                    page.files.insert(lent.file, file);
+                }
+                page.answer(ask)
+            }
+            Between::Import { ask } => {
+                if !WHOLE {
+                    return between::not_here();
+                }
+                ok(&between::import(ask, self.language)?)
+            }
+            Between::Imported(imported) => {
+                let (name, file) = imported.file()?;
+                ok(&self.put(name, file)?)
+            }
+        }
+    }
+
+    /// Takes a file among those that are open.
+    fn put(&mut self, name: String, mut file: File) -> Result<Overview, String> {
+        if self.files.len() >= MOST && !self.files.contains_key(&name) {
+            return Err("too many files are open: close one".to_owned());
+        }
+        file.language = self.language;
+        let name = if file.imported { with_ending(&name) } else { name };
+        self.files.insert(name.clone(), file);
+        self.look(name)
     }
 
     fn file(&self, name: &str) -> Result<&File, String> {
@@ -82,14 +136,8 @@ impl Page {
 
 impl Answers for Page {
     fn open(&mut self, name: String, text: String) -> Result<Overview, String> {
-        if self.files.len() >= MOST && !self.files.contains_key(&name) {
-            return Err("too many files are open: close one".to_owned());
-        }
-        let mut file = File::open(&name, text)?;
-        file.language = self.language;
-        let name = if file.imported { with_ending(&name) } else { name };
-        self.files.insert(name.clone(), file);
-        self.look(name)
+        let file = between::open(&name, text)?;
+        self.put(name, file)
     }
 
     fn close(&mut self, file: String) -> Result<(), String> {
@@ -99,7 +147,11 @@ impl Answers for Page {
         Ok(())
     }
 
-    fn speak(&mut self, language: String) -> Result<(), String> {
+    fn speak(&mut self, language: String, words: Option<String>) -> Result<(), String> {
+        // A program with its own texts takes none from a client.
+        if let Some(words) = words.filter(|_| cfg!(target_arch = "wasm32")) {
+            g7_model::said::teach(words);
+        }
         self.language = Language::of(&language).unwrap_or_default();
         for file in self.files.values_mut() {
             file.language = self.language;
@@ -156,10 +208,16 @@ impl Answers for Page {
     }
 
     fn forms(&mut self) -> Result<Vec<Form>, String> {
+        if !WHOLE {
+            return between::not_here();
+        }
         Ok(export::forms())
     }
 
     fn export(&mut self, file: String, to: String) -> Result<Out, String> {
+        if !WHOLE {
+            return between::not_here();
+        }
         export::export(&file, self.file(&file)?, &to)
     }
 
@@ -175,16 +233,14 @@ impl Answers for Page {
         Ok(Style { css: g7_draw::style(dark) })
     }
 
-    fn explain(&mut self, code: String) -> Result<Explained, String> {
-        let page = explain(&code, Language::English);
-        Ok(Explained { markdown: page.ok_or_else(|| format!("there is no problem `{code}`"))? })
-    }
-
     fn test(&mut self, file: String, name: Option<String>) -> Result<testing::Report, String> {
         testing::test(self.file(&file)?, name.as_deref())
     }
 
     fn prove(&mut self, file: String, limits: prove::Limits) -> Result<prove::Report, String> {
+        if !WHOLE {
+            return between::not_here();
+        }
         let known = self.proofs.remove(&file);
         let (proof, report) = prove::prove(self.file(&file)?, known, limits);
         self.proofs.insert(file, proof);
@@ -192,10 +248,16 @@ impl Answers for Page {
     }
 
     fn prove_ways(&mut self, file: String, wish: prove::Wish) -> Result<prove::Ways, String> {
+        if !WHOLE {
+            return between::not_here();
+        }
         prove::ways(self.file(&file)?, &wish)
     }
 
     fn compare(&mut self, wish: prove::Both) -> Result<prove::Compared, String> {
+        if !WHOLE {
+            return between::not_here();
+        }
         let [a, b] = &wish.files;
         prove::compared([self.file(a)?, self.file(b)?], &wish)
     }

@@ -3,7 +3,7 @@
 
 use serde::Deserialize;
 
-use crate::answer::{Answer, Before, Breaks, Explained, Style, Text, ok};
+use crate::answer::{Answer, Before, Breaks, Style, Text, ok};
 use crate::drawing::Wish as Drawing;
 use crate::edit::Edited;
 use crate::export::{Form, Out};
@@ -72,8 +72,8 @@ requests! {
     /// Forgets a file.
     fn close(file: String) -> ();
 
-    /// Chooses the language of the answers: `en`, `fr`, `pt`.
-    fn speak(language: String) -> ();
+    /// Chooses the language of the answers: `en`, `fr`, `pt`. A program without the texts in it is given them.
+    fn speak(language: String, words: Option<String>) -> ();
 
     fn look(file: String) -> Overview;
 
@@ -126,9 +126,6 @@ requests! {
         #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         dark: bool,
     ) -> Style;
-
-    /// The page on a kind of problem.
-    fn explain(code: String) -> Explained;
 
     /// Runs the tests whose titles contain `name`, or all.
     fn test(file: String, name: Option<String>) -> Tested;
@@ -273,4 +270,17 @@ fn end() -> usize {
 /// The default number of edges in a lane: more than the columns of a screen.
 fn lane() -> usize {
     4_000
+}
+
+impl Request {
+    /// The names of the files that a question is about which the first module does not answer.
+    pub(crate) fn files(&self) -> Vec<String> {
+        match self {
+            Request::export(export { file, .. })
+            | Request::prove(prove { file, .. })
+            | Request::prove_ways(prove_ways { file, .. }) => vec![file.clone()],
+            Request::compare(compare { wish }) => wish.files.to_vec(),
+            _ => Vec::new(),
+        }
+    }
 }

@@ -7,6 +7,8 @@ use common::{Chance, example};
 use g7_page::Page;
 use serde_json::{Value, json};
 
+const PUMP: &str = r#"<GCDocument name="Pump"><GCInitialStep id="1" name="S1" x="0" y="0"/></GCDocument>"#;
+
 fn is_answer(text: &str) -> bool {
     serde_json::from_str::<Value>(text)
         .is_ok_and(|v| v.get("ok").is_some() || v.get("no").is_some_and(Value::is_string))
@@ -46,7 +48,6 @@ fn messages(text: &str) -> Vec<Value> {
         json!({ "do": "search", "file": file, "text": "bead" }),
         json!({ "do": "symbols", "file": file }),
         json!({ "do": "format", "file": file }),
-        json!({ "do": "explain", "code": "G0101" }),
         json!({ "do": "style", "dark": true }),
         json!({ "do": "prove", "file": file, "states": 4, "mib": 1 }),
         json!({ "do": "run_start", "file": file, "run": "p", "plant": "none", "moves": [{ "wait_ns": 0, "set": [[0, "1"]] }] }),
@@ -69,6 +70,9 @@ fn messages(text: &str) -> Vec<Value> {
         json!({ "do": "run_restart", "run": "r" }),
         json!({ "do": "run_stop", "run": "r" }),
         json!({ "do": "close", "file": file }),
+        json!({ "between": "import", "ask": { "do": "open", "file": "a.xml", "text": PUMP } }),
+        json!({ "between": "imported", "file": "a.xml", "text": text, "told": [{ "code": "G0111", "what": "it ends" }] }),
+        json!({ "between": "about", "files": [{ "file": file, "text": text }], "ask": { "do": "look", "file": file } }),
     ]
 }
 
@@ -105,8 +109,9 @@ fn distorted_messages_do_no_harm() {
         let mut page = Page::new();
         for mut message in messages(&example("bead-sorter/chart.g7")) {
             if let Some(fields) = message.as_object_mut() {
-                let keys: Vec<String> = fields.keys().filter(|k| *k != "do").cloned().collect();
-                if !keys.is_empty() && chance.below(2) == 0 && fields["do"] != "open" {
+                let keys: Vec<String> =
+                    fields.keys().filter(|k| *k != "do" && *k != "between").cloned().collect();
+                if !keys.is_empty() && chance.below(2) == 0 && fields.get("do") != Some(&json!("open")) {
                     fields.insert(chance.one(&keys).clone(), chance.one(&odd).clone());
                 }
             }

@@ -49,7 +49,7 @@ class Comparison {
   /** The scan that both runs show, from 0. */
   scan = $state(0);
   playing = $state(false);
-  #worker = new Local();
+  #worker = new Local('g7-whole.wasm');
   #turn = 0;
   #walk = 0;
 

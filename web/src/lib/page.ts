@@ -1,5 +1,9 @@
 // The Rust crate `g7-page` as wasm in a worker: one JSON message in, one out, in the order of the
 // requests. The worker keeps parsing, layout and runs off the painting thread.
+//
+// There are two modules of it (decision 55). The first shows, edits and runs charts. What it does not contain
+// it says itself: it answers with the files that the question is about, and a worker with the second module,
+// the whole program, is asked.
 import { untrack } from 'svelte';
 
 import { prefs } from './prefs.svelte';
@@ -26,7 +30,18 @@ export interface Door {
   call<N extends RunName>(message: { do: N } & Message<N>): Promise<Answers[N]>;
 }
 
+/** The module that is loaded at once, and the whole program. */
+export type Module = 'g7.wasm' | 'g7-whole.wasm';
+
+/** What the first module says of a question that the second one answers. */
+interface Elsewhere {
+  /** The message by which it is asked. */
+  as: 'about' | 'import';
+  files: { file: string; text: string }[];
+}
+
 interface Waiting {
+  message: object;
   resolve(value: unknown): void;
   reject(reason: Error): void;
 }
@@ -38,38 +53,46 @@ export function opened<T>(answer: string): T {
   return said.ok as T;
 }
 
+/** The begin of an answer that sends to the second module. */
+const ELSEWHERE = '{"elsewhere":';
+
 /** A worker with the wasm; it starts with the first message. */
 export class Local implements Door {
   #worker: Worker | undefined;
   #waiting: Waiting[] = [];
   /** The language that the worker was told. */
   #language = 'en';
+  /** A worker with the second module, once a question has needed it. */
+  #whole: Local | undefined;
+
+  constructor(readonly module: Module = 'g7.wasm') {}
 
   call<N extends Name>(message: { do: N } & Message<N>): Promise<Answers[N]> {
-    this.#worker ??= this.#start();
+    return this.#ask(message) as Promise<Answers[N]>;
+  }
+
+  #ask(message: object): Promise<unknown> {
+    const worker = (this.#worker ??= this.#start());
     const language = untrack(() => prefs.language);
     if (this.#language !== language) {
       this.#language = language;
-      void this.#send({ do: 'speak', language });
+      worker.postMessage({ speak: language });
     }
-    return this.#send(message);
-  }
-
-  #send<N extends Name>(message: { do: N } & Message<N>): Promise<Answers[N]> {
-    const answer = new Promise<Answers[N]>((resolve, reject) => {
-      this.#waiting.push({ resolve: resolve as (value: unknown) => void, reject });
+    return new Promise((resolve, reject) => {
+      this.#waiting.push({ message, resolve, reject });
+      worker.postMessage(JSON.stringify(message));
     });
-    this.#worker?.postMessage(JSON.stringify(message));
-    return answer;
   }
 
   #start(): Worker {
     const worker = new Worker(new URL('./page.worker.ts', import.meta.url), { type: 'module' });
-    worker.postMessage({ wasm: new URL('g7.wasm', document.baseURI).href });
+    worker.postMessage({ wasm: new URL(this.module, document.baseURI).href });
     worker.onmessage = (event: MessageEvent<string>) => {
       const waiting = this.#waiting.shift();
       try {
-        waiting?.resolve(opened(event.data));
+        // The text is looked at first: a drawing is long, and is not to be parsed twice.
+        const there = event.data.startsWith(ELSEWHERE) ? (JSON.parse(event.data) as { elsewhere: Elsewhere }).elsewhere : null;
+        waiting?.resolve(there ? this.#elsewhere(waiting.message, there) : opened(event.data));
       } catch (error) {
         waiting?.reject(error as Error);
       }
@@ -78,11 +101,19 @@ export class Local implements Door {
     return worker;
   }
 
+  /** Asks the second module. What it has converted, the first one opens. */
+  async #elsewhere(ask: object, { as, files }: Elsewhere): Promise<unknown> {
+    this.#whole ??= new Local('g7-whole.wasm');
+    const answer = await this.#whole.#ask({ between: as, files, ask });
+    return as === 'import' ? this.#ask(answer as object) : answer;
+  }
+
   /** Ends the worker, whatever it is doing; all messages under way fail, and its files are gone. */
   stop(why = ''): void {
     const waiting = this.#waiting.splice(0);
     this.#worker?.terminate();
     this.#worker = undefined;
+    this.#whole?.stop(why);
     this.#language = 'en';
     waiting.forEach((w) => w.reject(new Error(why || 'the worker stopped')));
   }

@@ -28,23 +28,30 @@ function ask(door: Door, message: string): string {
   return decoder.decode(new Uint8Array(door.memory.buffer, door.g7_answer(), length));
 }
 
+/** Tells the module the language of its answers. It contains the English texts alone; those in other languages
+ * are fetched when the first of them is chosen. */
+async function speak(door: Door, language: string): Promise<void> {
+  const words = language === 'en' ? undefined : await import('./said').then((said) => said.texts).catch(() => undefined);
+  ask(door, JSON.stringify({ do: 'speak', language, words }));
+}
+
 // Messages are processed one after the other, so that answers come in the order of the requests.
 let turn: Promise<void> = Promise.resolve();
 
-self.onmessage = (event: MessageEvent<string | { wasm: string }>) => {
+self.onmessage = (event: MessageEvent<string | { wasm: string } | { speak: string }>) => {
   const said = event.data;
-  if (typeof said !== 'string') {
+  if (typeof said !== 'string' && 'wasm' in said) {
     door = load(said.wasm);
     return;
   }
   turn = turn.then(async () => {
-    let answer: string;
     try {
       if (!door) throw new Error('no module');
-      answer = ask(await door, said);
+      if (typeof said === 'string') self.postMessage(ask(await door, said));
+      else await speak(await door, said.speak);
     } catch (error) {
-      answer = JSON.stringify({ no: `The program in the page failed: ${(error as Error).message}` });
+      // Whoever chose a language waits for no answer.
+      if (typeof said === 'string') self.postMessage(JSON.stringify({ no: `The program in the page failed: ${(error as Error).message}` }));
     }
-    self.postMessage(answer);
   });
 };

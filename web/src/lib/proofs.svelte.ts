@@ -52,7 +52,10 @@ class Proofs {
   /** The text whose search took too long. */
   cut = $state('');
   shown: Shown | null = $state.raw(null);
-  #worker = new Local();
+  /** The page asks by itself: from the first change of a text on, or once the panel was open. Whoever only looks at
+   * charts loads no module for it. */
+  begun = $state(false);
+  #worker = new Local('g7-whole.wasm');
   /** The text that the worker has. */
   #opened = '';
   #turn = 0;

@@ -111,9 +111,6 @@ export type Edited = {
   tests: Array<TestRow>;
 };
 
-/** A page of the book. */
-export type Explained = { markdown: string };
-
 export type Failure = {
   message: string;
   /** The place of the failed statement. */
@@ -836,8 +833,8 @@ export interface Requests {
   open: { file: string; text: string };
   /** Forgets a file. */
   close: { file: string };
-  /** Chooses the language of the answers: `en`, `fr`, `pt`. */
-  speak: { language: string };
+  /** Chooses the language of the answers: `en`, `fr`, `pt`. A program without the texts in it is given them. */
+  speak: { language: string; words?: string | null };
   look: { file: string };
   text: { file: string };
   /** Changes the text as it is typed. A unit is undone alone. */
@@ -872,8 +869,6 @@ export interface Requests {
   logic_read: { tongue: Tongue; text: string };
   /** The style sheet of the drawings. */
   style: { dark?: boolean };
-  /** The page on a kind of problem. */
-  explain: { code: string };
   /** Runs the tests whose titles contain `name`, or all. */
   test: { file: string; name?: string | null };
   /** Answers all questions about the file, as far as the limits go. */
@@ -979,7 +974,6 @@ export interface Answers {
   logic: Array<LogicPiece>;
   logic_read: Text;
   style: Style;
-  explain: Explained;
   test: TestAnswer;
   prove: ProofReport;
   prove_ways: ProofWays;

@@ -11,7 +11,7 @@ mod table;
 use std::borrow::Cow;
 
 use crate::Language;
-pub use table::{Row, rows};
+pub use table::{Row, rows, teach};
 
 /// A text, with the template and the parts it was made of.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -13,7 +13,9 @@ use crate::Language;
 /// A text in English, French and Portuguese.
 pub type Row = [&'static str; 3];
 
-/// The parts of the table, by the crates that say the texts first.
+/// The parts of the table, by the crates that say the texts first. A module for browsers has none: the page
+/// fetches them for readers of another language than English (`web/src/lib/said.ts`) and hands them in ([`teach`]).
+#[cfg(not(target_arch = "wasm32"))]
 const TABLES: &[&str] = &[
     include_str!("titles.txt"),
     include_str!("check.txt"),
@@ -21,10 +23,22 @@ const TABLES: &[&str] = &[
     include_str!("iec.txt"),
     include_str!("exchange.txt"),
 ];
+#[cfg(target_arch = "wasm32")]
+const TABLES: &[&str] = &[];
+
+/// What was handed in beside the parts of the table.
+static TAUGHT: OnceLock<String> = OnceLock::new();
+
+/// Hands in rows, in the form of the parts of the table. Only the first call does anything, and only before a text
+/// was told in another language than English.
+pub fn teach(rows: String) {
+    TAUGHT.get_or_init(|| rows);
+}
 
 /// All rows, as they stand. A row that is cut short has empty texts.
 pub fn rows() -> impl Iterator<Item = Row> {
-    TABLES.iter().flat_map(|table| {
+    let taught = TAUGHT.get().map(String::as_str);
+    TABLES.iter().copied().chain(taught).flat_map(|table| {
         let mut lines = table.lines().filter(|l| !l.is_empty() && !l.starts_with("# "));
         std::iter::from_fn(move || {
             let english = lines.next()?;

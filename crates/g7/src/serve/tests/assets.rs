@@ -85,7 +85,7 @@ async fn a_folder_may_have_packed_forms_beside_its_files() {
 async fn the_page_in_the_program_has_all_forms() {
     let server = Server::with(|args| args.page_dir = None, Limits::default()).await;
     let dist = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../web/dist");
-    for name in ["index.html", "g7.wasm"] {
+    for name in ["index.html", "g7.wasm", "g7-whole.wasm"] {
         let Ok(plain) = fs::read(dist.join(name)) else {
             return g7_peers::skip("the page is not built");
         };
