@@ -105,7 +105,7 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
 }
 
 fn point(text: &str) -> Result<Point, String> {
-    match read_point(text)? {
+    match read_point(text).map_err(|why| why.to_string())? {
         point @ (Point::Modbus(_) | Point::S7(_) | Point::Line(_)) => Ok(point),
         Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_) => {
             Err("this is no point to read by hand".to_owned())

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use g7_model::{FileId, Nanos, Problem, ProfileName, Severity};
+use g7_model::{FileId, Nanos, Problem, ProfileName, Said, Severity, say};
 use g7_online::Wiring;
 use g7_online::setup::{self, Channel, Kind, Origin, Setup};
 use g7_rig::{Bench, Options};
@@ -94,15 +94,15 @@ pub(crate) fn make(
 }
 
 /// The bytes of a password, certificate or key, which is never in the io file.
-pub(crate) fn secret(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+pub(crate) fn secret(io: &Path, origin: &Origin) -> Result<Vec<u8>, Said> {
     match origin {
         Origin::File(name) => {
             let path = io.with_file_name(name);
-            std::fs::read(&path).map_err(|e| format!("{}: {}", path.display(), plain(&e)))
+            std::fs::read(&path).map_err(|e| Said::foreign(format!("{}: {}", path.display(), plain(&e))))
         }
         Origin::Variable(name) => std::env::var_os(name)
             .map(std::ffi::OsString::into_encoded_bytes)
-            .ok_or_else(|| format!("the environment has no variable {name}")),
+            .ok_or_else(|| say!("the environment has no variable {}", Said::foreign(name))),
     }
 }
 

@@ -20,6 +20,8 @@ const TABLES: &[&str] = &[
     include_str!("tests.txt"),
     include_str!("iec.txt"),
     include_str!("exchange.txt"),
+    include_str!("online.txt"),
+    include_str!("g7.txt"),
 ];
 
 /// All rows, as they stand. A row that is cut short has empty texts.
