@@ -21,6 +21,7 @@ const TABLES: &[&str] = &[
     include_str!("iec.txt"),
     include_str!("exchange.txt"),
     include_str!("online.txt"),
+    include_str!("codegen.txt"),
     include_str!("g7.txt"),
 ];
 
