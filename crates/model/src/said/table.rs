@@ -22,6 +22,7 @@ const TABLES: &[&str] = &[
     include_str!("exchange.txt"),
     include_str!("online.txt"),
     include_str!("codegen.txt"),
+    include_str!("edit.txt"),
     include_str!("g7.txt"),
 ];
 
