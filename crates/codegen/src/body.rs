@@ -14,7 +14,7 @@ use std::collections::HashMap;
 
 use g7_engine::{Block as FunctionBlock, Builtin, Cmp, Num};
 use g7_equations::{About, Expr as Term, Memory, MemoryId, Stmt as Line, expand};
-use g7_model::{Span, Type};
+use g7_model::{Said, Span, Type, say};
 
 use crate::lets::{Lets, drop_unused};
 use crate::operations::{self, Made, Needs};
@@ -63,7 +63,7 @@ pub(crate) trait Places {
     fn needs(&mut self, needs: Needs);
 
     /// Says that the language of the code has no way for this.
-    fn cannot(&mut self, what: &str);
+    fn cannot(&mut self, what: Said);
 }
 
 /// Code that was translated.
@@ -300,7 +300,7 @@ impl Body<'_> {
                 {
                     self.out.push(Stmt::set(place, from));
                 } else {
-                    self.places.cannot("a table that is given as one");
+                    self.places.cannot(say!("a table that is given as one"));
                 }
             }
         }
@@ -320,7 +320,7 @@ impl Body<'_> {
 
     fn set_element(&mut self, m: MemoryId, i: &Term, e: &Term) {
         let Home::Table(place, n) = self.places.home(m) else {
-            return self.places.cannot("a table of this kind");
+            return self.places.cannot(say!("a table of this kind"));
         };
         let i = self.number(i, Num::I64).cast(Ty::Size);
         let value = self.number(e, n);
@@ -356,13 +356,13 @@ impl Body<'_> {
             Term::Read(m) => match self.places.home(*m) {
                 Home::Local(name) => self.local(*m, name),
                 Home::Number(place, have) => operations::cast(place, have, n),
-                Home::Text(..) | Home::Table(..) => self.none("a text read as a number"),
+                Home::Text(..) | Home::Table(..) => self.none(say!("a text read as a number")),
             },
             Term::Element(m, i) => {
                 let i = self.number(i, Num::I64).cast(Ty::Size);
                 match self.places.home(*m) {
                     Home::Table(place, _) => place.at(i),
-                    _ => self.none("a table of this kind"),
+                    _ => self.none(say!("a table of this kind")),
                 }
             }
             Term::Not(x) => self.truth(x).not(),
@@ -417,8 +417,8 @@ impl Body<'_> {
                     Made::Checked(..) => self.operate(e),
                 }
             }
-            Term::Random(_) => self.none("a random number"),
-            Term::Fails(_) | Term::Text(_) => self.none("a question of this kind"),
+            Term::Random(_) => self.none(say!("a random number")),
+            Term::Fails(_) | Term::Text(_) => self.none(say!("a question of this kind")),
             Term::Neg(..) | Term::Convert(..) | Term::Trunc(..) | Term::Call(..) => self.operate(e),
         }
     }
@@ -436,7 +436,7 @@ impl Body<'_> {
         }
     }
 
-    fn none(&mut self, what: &str) -> Expr {
+    fn none(&mut self, what: Said) -> Expr {
         self.places.cannot(what);
         Expr::Bool(false)
     }
@@ -495,7 +495,7 @@ impl Body<'_> {
                 let args = list.iter().enumerate().map(|(i, e)| self.number(e, of(i))).collect();
                 (operations::call(*f, n, args, &mut needs), n)
             }
-            _ => (Made::Plain(self.none("an operation of this kind")), Num::I64),
+            _ => (Made::Plain(self.none(say!("an operation of this kind"))), Num::I64),
         };
         if needs != Needs::default() {
             self.places.needs(needs);
@@ -505,7 +505,7 @@ impl Body<'_> {
 
     /// SEL: the second where the first is FALSE, else the third.
     fn select(&mut self, list: &[Term], n: Num) -> Expr {
-        let [c, a, b] = list else { return self.none("SEL without its operands") };
+        let [c, a, b] = list else { return self.none(say!("SEL without its operands")) };
         let c = self.truth(c);
         let (a, b) = (self.number(a, n), self.number(b, n));
         Expr::If(Box::new(c), Box::new(b), Box::new(a))
@@ -513,7 +513,7 @@ impl Body<'_> {
 
     /// MUX: one of several by a number from 0.
     fn choose(&mut self, list: &[Term], n: Num) -> Expr {
-        let Some((k, rest)) = list.split_first() else { return self.none("MUX without its operands") };
+        let Some((k, rest)) = list.split_first() else { return self.none(say!("MUX without its operands")) };
         let k = self.number(k, Num::I64);
         let all = self.each(rest, n);
         let chosen = all.into_iter().enumerate().rev().reduce(|(_, other), (i, this)| {
@@ -531,7 +531,7 @@ impl Body<'_> {
             Term::Read(m) => match self.places.home(*m) {
                 Home::Local(name) => shared(self.local(*m, name)),
                 Home::Text(place, _) => shared(place),
-                Home::Number(..) | Home::Table(..) => self.none("a number read as a text"),
+                Home::Number(..) | Home::Table(..) => self.none(say!("a number read as a text")),
             },
             Term::Call(_, Type::String(cap), _) | Term::Convert(_, Type::String(cap), _) => {
                 let name = self.fresh();
@@ -545,7 +545,7 @@ impl Body<'_> {
                 self.text_into(e, Expr::name(name.clone()), *cap);
                 shared(Expr::Name(name))
             }
-            _ => self.none("a text of this kind"),
+            _ => self.none(say!("a text of this kind")),
         }
     }
 
@@ -577,7 +577,7 @@ impl Body<'_> {
                 let [place, cap] = to;
                 self.out.push(Stmt::Do(Expr::Call(f, vec![x, place, cap])));
             }
-            _ => self.places.cannot("a text of this kind"),
+            _ => self.places.cannot(say!("a text of this kind")),
         }
     }
 }

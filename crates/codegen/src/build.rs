@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet, HashMap};
 use g7_compile::Compiled;
 use g7_engine::{Addr, Code, NONE, Num, Receptivity, Rows, StepId, Tables};
 use g7_equations::{Bodies, Expr as Term, Stmt as Line};
-use g7_model::{Problem, Span, Type, codes};
+use g7_model::{Problem, Said, Span, Type, codes, say};
 
 use crate::body::{self, Code as Translated};
 use crate::names::{Names, of_transition};
@@ -148,14 +148,14 @@ impl<'a> Gen<'a> {
         if nanoseconds <= longest {
             return;
         }
-        let text = format!(
+        let text = say!(
             "a time of {} s does not fit: 32 bits of {} tell {} s; a coarser unit of the clock, or nanoseconds in 64 bits, hold it",
             nanoseconds / 1_000_000_000,
-            self.room.clock.unit(),
+            Said::foreign(self.room.clock.unit()),
             longest / 1_000_000_000
         );
         if self.problems.iter().all(|p| *p.what != *text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
         }
     }
 
@@ -171,10 +171,10 @@ impl<'a> Gen<'a> {
     }
 
     /// Reports a construct that the language of the code cannot say.
-    pub(crate) fn cannot(&mut self, what: &str) {
-        let text = format!("{what} cannot be printed as code");
+    pub(crate) fn cannot(&mut self, what: Said) {
+        let text = say!("{what} cannot be printed as code");
         if self.problems.iter().all(|p| *p.what != *text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
         }
     }
 

@@ -16,7 +16,7 @@ use g7_engine::{Addr, Num, StepId};
 use g7_equations::{
     About, Class, Equations, Memory, MemoryId, Options, Section, StepTimes, Stmt as Line, What,
 };
-use g7_model::Type;
+use g7_model::{Said, Type, say};
 
 use crate::body::{self, Home, Places};
 use crate::build::{Gen, s, state};
@@ -298,7 +298,7 @@ impl Flat<'_, '_> {
                 Shape::Text(cap) => Home::Text(slot.place(), cap),
                 Shape::Many(n, _) => Home::Table(slot.place(), n),
                 Shape::Texts(..) | Shape::Fb(_) => {
-                    self.cannot("a table of texts or of function blocks");
+                    self.cannot(say!("a table of texts or of function blocks"));
                     Home::Number(Expr::Bool(false), Num::Bool)
                 }
             },
@@ -439,7 +439,7 @@ impl Places for Flat<'_, '_> {
         self.g.needs(needs);
     }
 
-    fn cannot(&mut self, what: &str) {
+    fn cannot(&mut self, what: Said) {
         self.g.cannot(what);
     }
 }

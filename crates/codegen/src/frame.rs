@@ -1,7 +1,7 @@
 //! Beginning, restart, safety, and whether two pictures are the same.
 
 use g7_engine::Num;
-use g7_model::Type;
+use g7_model::{Type, say};
 
 use crate::build::{Gen, s, state};
 use crate::operations::differ;
@@ -31,7 +31,7 @@ impl Gen<'_> {
             let Some(value) = value else { continue };
             let (name, note, ty) = (slot.field.to_uppercase(), slot.note.clone(), slot.ty());
             if matches!(slot.shape, Shape::Texts(..)) {
-                self.cannot("a constant table of texts");
+                self.cannot(say!("a constant table of texts"));
             }
             self.m.consts.push(Const { public: false, note, name, ty, value });
         }

@@ -54,7 +54,7 @@ use std::collections::{HashMap, HashSet};
 
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
-use g7_model::{Problem, Severity, Span, codes};
+use g7_model::{Problem, Severity, Span, codes, say};
 
 use build::Gen;
 pub use output::{File, Parts};
@@ -176,8 +176,8 @@ pub fn print(compiled: &Compiled, options: &Options<'_>) -> Result<Printed, Vec<
 pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Result<Printed, Vec<Problem>> {
     let mut g = Gen::new(compiled, options.source, options.room);
     if options.style == Style::Flat && options.room != Room::default() {
-        let text = "code for little memory is in the structured style alone";
-        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), g7_model::Said::foreign(text))]);
+        let text = say!("code for little memory is in the structured style alone");
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
     }
     g.judge_initial_times();
     match options.style {
@@ -193,18 +193,19 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
         problems.push(Problem::new(
             &codes::NOT_CARRIED,
             at,
-            g7_model::say!("reals are turned into text or back: C has no way for that without a library"),
+            say!("reals are turned into text or back: C has no way for that without a library"),
         ));
     }
     if let Some(at) = g.math {
-        let (what, way) = match options.language {
-            Language::C | Language::Arduino => {
-                ("`<math.h>`", "their last digit can be another than in a run here")
+        let text = match options.language {
+            Language::C | Language::Arduino => say!(
+                "the functions of LREAL come from `<math.h>`; their last digit can be another than in a run here"
+            ),
+            Language::Rust => {
+                say!("the functions of LREAL come from the crate `libm`; add it to the dependencies")
             }
-            Language::Rust => ("the crate `libm`", "add it to the dependencies"),
         };
-        let text = format!("the functions of LREAL come from {what}; {way}");
-        problems.push(Problem::new(&codes::DIFFERENT, at, g7_model::Said::foreign(text)));
+        problems.push(Problem::new(&codes::DIFFERENT, at, text));
     }
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         return Err(problems);
@@ -213,19 +214,15 @@ pub fn print_as(compiled: &Compiled, options: &Options<'_>, parts: Parts) -> Res
     let helpers = match (prune::missing(&module), runtime::helpers(all, &called)) {
         (None, Ok(helpers)) => helpers,
         (Some(name), _) | (None, Err(name)) => {
-            let text = format!("the code asks for `{name}`, which is not there");
-            return Err(vec![Problem::new(
-                &codes::NOT_CARRIED,
-                Span::default(),
-                g7_model::Said::foreign(text),
-            )]);
+            let text = say!("the code asks for `{name}`, which is not there");
+            return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
         }
     };
     let name = file_name(options.name);
     if parts == Parts::Apart && ["g7", "g7_math"].contains(&name.as_str()) {
         let text =
-            format!("a chart called `{name}` would have the files of all charts; give its code another name");
-        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), g7_model::Said::foreign(text))]);
+            say!("a chart called `{name}` would have the files of all charts; give its code another name");
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, Span::default(), text)]);
     }
     let files = match options.language {
         Language::C => files::c(&module, &helpers, &name, options.room, parts),

@@ -3,7 +3,7 @@
 
 use g7_engine::{Addr, Block as FunctionBlock, GroupId, Num, StepId, WatchId};
 use g7_equations::{Memory, MemoryId, What};
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Said, codes, say};
 
 use crate::body::{Home, Places};
 use crate::build::{Gen, memory, s};
@@ -39,13 +39,13 @@ impl Gen<'_> {
             Shape::Many(n, _) => Home::Table(place, n),
             Shape::Fb(kind) => match members(kind).get(part) {
                 Some((name, n)) => Home::Number(place.field(*name), *n),
-                None => self.no_home("a table of function blocks"),
+                None => self.no_home(say!("a table of function blocks")),
             },
-            Shape::Texts(..) => self.no_home("a table of texts"),
+            Shape::Texts(..) => self.no_home(say!("a table of texts")),
         }
     }
 
-    fn no_home(&mut self, what: &str) -> Home {
+    fn no_home(&mut self, what: Said) -> Home {
         self.cannot(what);
         Home::Number(Expr::Bool(false), Num::Bool)
     }
@@ -92,7 +92,7 @@ impl Places for Gen<'_> {
         match self.what(id) {
             What::Variable(_) | What::BlockClock(_) => match self.slot_of(id) {
                 Some((slot, part)) => self.part(&slot, part, slot.place()),
-                None => self.no_home("a variable without a place"),
+                None => self.no_home(say!("a variable without a place")),
             },
             What::Own(of) => match self.slot_of(of) {
                 Some((slot, part)) if matches!(slot.shape, Shape::Fb(_)) => {
@@ -108,11 +108,11 @@ impl Places for Gen<'_> {
             },
             What::Given(of) => match self.slot_of(of) {
                 Some((slot, part)) => self.part(&slot, part, s().field("next").field(slot.field.clone())),
-                None => self.no_home("a variable without a place"),
+                None => self.no_home(say!("a variable without a place")),
             },
             What::Wrote(of) => match self.slot_of(of) {
                 Some((slot, part)) => self.flag(&slot, part, s().field("wrote").field(slot.field.clone())),
-                None => self.no_home("a variable without a place"),
+                None => self.no_home(say!("a variable without a place")),
             },
             What::Step(step) => Home::Number(self.active(step), Num::Bool),
             What::Was(step) => Home::Number(s().field("before").at(self.step(step)), Num::Bool),
@@ -216,10 +216,10 @@ impl Places for Gen<'_> {
         }
     }
 
-    fn cannot(&mut self, what: &str) {
-        let text = format!("{what} cannot be printed as code");
+    fn cannot(&mut self, what: Said) {
+        let text = say!("{what} cannot be printed as code");
         if self.problems.iter().all(|p| *p.what != *text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
         }
     }
 }

@@ -10,7 +10,7 @@
 
 use std::ops::Range;
 
-use g7_model::{Document, Problem, Severity};
+use g7_model::{Document, Language, Problem, Said, Severity};
 use g7_syntax::{Marks, Tree};
 
 use crate::id::ItemId;
@@ -73,11 +73,16 @@ pub struct Edit {
 
 /// The reason why a gesture was refused: a sentence for the user.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal(String);
+pub struct Refusal(Said);
 
 impl Refusal {
-    pub(crate) fn new(why: impl Into<String>) -> Refusal {
-        Refusal(why.into())
+    pub(crate) fn new(why: Said) -> Refusal {
+        Refusal(why)
+    }
+
+    /// The sentence in a language.
+    pub fn in_language(&self, language: Language) -> String {
+        self.0.in_language(language)
     }
 }
 
@@ -90,7 +95,7 @@ impl std::fmt::Display for Refusal {
 impl std::error::Error for Refusal {}
 
 /// Refuses a gesture.
-pub(crate) fn refuse<T>(why: impl Into<String>) -> Result<T, Refusal> {
+pub(crate) fn refuse<T>(why: Said) -> Result<T, Refusal> {
     Err(Refusal::new(why))
 }
 

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 
 use g7_model::{
     Chart, ChartItem, Document, Expr, ExprKind, FileId, Item, Literal, Name, Place, Span, Step, StepKind,
-    Transition,
+    Transition, say,
 };
 
 use crate::change::{Anchors, Refusal, Source, refuse};
@@ -105,13 +105,13 @@ impl<'s> Draft<'s> {
     pub(crate) fn number(&self, chart: &str, number: usize) -> Result<Span, Refusal> {
         match self.chart(chart)?.transitions().nth(number) {
             Some(t) => Ok(t.at.0),
-            None => refuse(format!("chart `{chart}` has no transition number {number}")),
+            None => refuse(say!("chart `{chart}` has no transition number {number}")),
         }
     }
 
     pub(crate) fn transition(&self, chart: &str, at: Span) -> Result<&Transition, Refusal> {
         let found = self.chart(chart)?.transitions().find(|t| t.at.0 == at);
-        found.ok_or_else(|| Refusal::new(format!("chart `{chart}` does not have this transition")))
+        found.ok_or_else(|| Refusal::new(say!("chart `{chart}` does not have this transition")))
     }
 
     pub(crate) fn transition_mut(&mut self, chart: &str, at: Span) -> Result<&mut Transition, Refusal> {
@@ -119,7 +119,7 @@ impl<'s> Draft<'s> {
             ChartItem::Transition(t) if t.at.0 == at => Some(t),
             _ => None,
         });
-        found.ok_or_else(|| Refusal::new(format!("chart `{chart}` does not have this transition")))
+        found.ok_or_else(|| Refusal::new(say!("chart `{chart}` does not have this transition")))
     }
 
     // New parts
@@ -220,11 +220,11 @@ fn free(first: u64, base: String, taken: impl Fn(&str) -> bool) -> String {
 }
 
 fn no_chart(name: &str) -> Refusal {
-    Refusal::new(format!("there is no chart `{name}`"))
+    Refusal::new(say!("there is no chart `{name}`"))
 }
 
 fn no_step(chart: &str, name: &str) -> Refusal {
-    Refusal::new(format!("chart `{chart}` has no step `{name}`"))
+    Refusal::new(say!("chart `{chart}` has no step `{name}`"))
 }
 
 /// True if a part is new.

@@ -32,6 +32,7 @@ mod splice;
 
 pub use change::{Anchors, Edit, Refusal, Source};
 pub use copy::{copy, copy_placed};
+use g7_model::say;
 pub use gesture::{Alignment, Branching, ChartSort, Gesture, Row, Sort, What};
 pub use history::History;
 pub use id::{End, ItemId, NoId, Part};
@@ -41,7 +42,7 @@ use g7_syntax::Tree;
 
 use change::refuse;
 use draft::Draft;
-use reading::{MENDED_FIRST, judge, judge_problems, read, unwritable};
+use reading::{judge, judge_problems, mended_first, read, unwritable};
 
 /// Executes a gesture; places of symbols are known only from the layout section of the text.
 pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
@@ -53,13 +54,13 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     if let Gesture::Text { splices } = gesture {
         return match spliced(source.text, splices) {
             Some(_) => Ok(Edit { splices: splices.clone(), ..Edit::default() }),
-            None => refuse("the change does not fit the text"),
+            None => refuse(say!("the change does not fit the text")),
         };
     }
     if let Gesture::Rename { id, name, to } = gesture {
         // Names in a text that cannot be read are not known.
         if !source.is_clean() {
-            return refuse(MENDED_FIRST);
+            return refuse(mended_first());
         }
         return gestures::rename(source, id.as_ref(), name.as_deref(), to);
     }
@@ -95,7 +96,7 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
 /// Renames the part that is named at a byte of the text, wherever it is used.
 pub fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
     if !source.is_clean() {
-        return refuse("the text has syntax errors; correct them first");
+        return refuse(say!("the text has syntax errors; correct them first"));
     }
     gestures::rename_at(source, at, to)
 }

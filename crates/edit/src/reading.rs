@@ -3,7 +3,7 @@
 //! It stands above the ends of a gesture (`change.rs`) and below the gestures and their execution. The tree
 //! that is read here goes out with the change, so that nobody reads the new text again.
 
-use g7_model::{Chart, ChartItem, Document, FileId, Item, Problem, Step};
+use g7_model::{Chart, ChartItem, Document, FileId, Item, Problem, Said, Step, say};
 use g7_syntax::{Marks, Tree};
 
 use crate::change::{Refusal, Source, refuse};
@@ -31,7 +31,7 @@ fn known(source: &Source<'_>, marks: &Marks) -> Tree {
 /// Checks that the text has no other problems than before, which stand elsewhere.
 pub(crate) fn judge_problems(source: &Source<'_>, splices: &[Splice], tree: &Tree) -> Result<(), Refusal> {
     if !splices.iter().all(|s| source.reads_cleanly(s.start..s.end)) {
-        return refuse(MENDED_FIRST);
+        return refuse(mended_first());
     }
     let before = |new: &&Problem| {
         source.problems.iter().any(|old| {
@@ -40,7 +40,7 @@ pub(crate) fn judge_problems(source: &Source<'_>, splices: &[Splice], tree: &Tre
         })
     };
     match tree.problems.iter().find(|new| !before(new)) {
-        Some(problem) => refuse(format!("this cannot be written: {problem}")),
+        Some(problem) => refuse(say!("this cannot be written: {}", problem.what)),
         None if tree.problems.len() != source.problems.len() => Err(unwritable()),
         None => Ok(()),
     }
@@ -54,8 +54,9 @@ fn moved(splices: &[Splice], at: u32) -> i64 {
 }
 
 /// The refusal of a gesture where the text cannot be read.
-pub(crate) const MENDED_FIRST: &str =
-    "the text has syntax errors; correct them first (the drawing shows the chart before them)";
+pub(crate) fn mended_first() -> Said {
+    say!("the text has syntax errors; correct them first (the drawing shows the chart before them)")
+}
 
 /// Checks that the text gives exactly the intended document.
 pub(crate) fn judge(
@@ -73,7 +74,7 @@ pub(crate) fn judge(
 }
 
 pub(crate) fn unwritable() -> Refusal {
-    Refusal::new("this cannot be written into the text as it stands here; change the text itself")
+    Refusal::new(say!("this cannot be written into the text as it stands here; change the text itself"))
 }
 
 /// True if two items mean the same: the empty braces of a step mean nothing.

@@ -10,7 +10,7 @@ use std::time::Duration;
 
 use g7_engine::Addr;
 use g7_host::{Clock, Value, WallClock};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_online::{Answer, AtDevice, Command, Controller, Happened, Mode, Paces, Panels, Running, What};
 use g7_rig::Role;
 use g7_store::log::Log;
@@ -401,7 +401,7 @@ impl Attendant {
         while let Ok(e) = running.disk.try_recv() {
             self.monitored(Monitor::unsaved);
             let now = self.clock.now();
-            self.note(now, &Told::Unsaved(plain(&e)));
+            self.note(now, &Told::Unsaved(plain(&e).to_string()));
         }
         for (device, trouble) in self.post.as_ref().map(Post::troubles).unwrap_or_default() {
             let now = self.clock.now();
@@ -477,7 +477,7 @@ fn lines() -> Receiver<String> {
 /// How the program ends: with an error where the scan panicked and left no controller.
 fn verdict(controller: Option<&Controller>, mode: Mode) -> Result<Verdict, Failure> {
     match (controller, mode) {
-        (None, _) => Err(Failure::Usage("the scan ended by an error of G7; outputs are safe".to_owned())),
+        (None, _) => Err(Failure::Usage(say!("the scan ended by an error of G7; outputs are safe"))),
         (Some(_), Mode::Fault(_)) => Ok(Verdict::Found),
         (Some(_), _) => Ok(Verdict::Fine),
     }

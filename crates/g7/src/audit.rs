@@ -6,12 +6,12 @@ use std::path::Path;
 use std::time::Duration;
 
 use g7_host::utc_millis;
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_online::setup::LogFile;
 use g7_store::log::{Entrance, Entry, Keep, Log, Mark, Opened, State, Ticket};
 use serde_json::{Value, json};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::message::talk;
 use crate::who::Who;
 
@@ -31,8 +31,9 @@ pub(crate) fn open(path: &Path, days: Option<u64>, mib: Option<u64>) -> Result<(
     let usual = Keep::default();
     let days = days.unwrap_or(usual.days);
     let bytes = mib.map_or(usual.bytes, |mib| mib << 20);
-    let Opened { log, newest } = Log::open(path, Keep { days, bytes, ..usual }, utc_millis)
-        .map_err(|e| Failure::Usage(format!("cannot use {} as the log: {e}", path.display())))?;
+    let Opened { log, newest } = Log::open(path, Keep { days, bytes, ..usual }, utc_millis).map_err(|e| {
+        Failure::Usage(say!("cannot use {} as the log: {e}", raw(path.display()), e = raw(&e)))
+    })?;
     tell(path, newest);
     let audit = Audit::of(&log);
     Ok((log, audit))

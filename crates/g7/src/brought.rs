@@ -7,7 +7,9 @@ use std::path::Path;
 use g7_online::setup::{Kind, OpcUaServer};
 use g7_online::{Clients, Wiring};
 
-use crate::failure::{Failure, unlogged};
+use g7_model::{Said, say};
+
+use crate::failure::{Failure, raw, unlogged};
 
 /// The clients and servers of a machine, with all kinds of this build. Nobody logs in to them.
 pub(crate) fn clients() -> Clients {
@@ -30,23 +32,26 @@ pub(crate) fn serving(wiring: &Wiring, users: Option<&Path>, logged: bool) -> Re
         .collect();
     for (name, server) in &servers {
         let at = server.address;
-        reachable(at, users.is_some(), logged).map_err(|why| Failure::Usage(format!("{name}: {why}")))?;
+        reachable(at, users.is_some(), logged).map_err(|why| Failure::Usage(say!("{}: {why}", raw(name))))?;
         if users.is_none() && server.anonymous == Some(false) {
-            let what = "nobody can come in: clients without a user are refused, and there are no users";
-            return Err(Failure::Usage(format!("{name}: {what}; {USERS}")));
+            let what = say!("nobody can come in: clients without a user are refused, and there are no users");
+            return Err(Failure::Usage(say!("{}: {what}; {}", raw(name), users_way())));
         }
     }
     if servers.is_empty() { Ok(clients()) } else { known(users) }
 }
 
 /// The way out for who lacks users.
-const USERS: &str = "name their file as `users` in [server] of the io file, and add them by `g7 users`";
+fn users_way() -> Said {
+    say!("name their file as `users` in [server] of the io file, and add them by `g7 users`")
+}
 
 #[cfg(feature = "opcua")]
 fn known(users: Option<&Path>) -> Result<Clients, Failure> {
     use g7_store::users::Users;
     let open = |path: &Path| {
-        let failed = |e| Failure::Usage(format!("cannot use {} as the users: {e}", path.display()));
+        let failed =
+            |e| Failure::Usage(say!("cannot use {} as the users: {e}", raw(path.display()), e = raw(&e)));
         Users::open(path).map(std::sync::Arc::new).map_err(failed)
     };
     Ok(Clients::default().with(g7_opcua::OpcUa { users: users.map(open).transpose()? }))
@@ -58,13 +63,13 @@ fn known(_: Option<&Path>) -> Result<Clients, Failure> {
 }
 
 /// Refuses what would let strangers in, as the page does.
-fn reachable(at: SocketAddr, users: bool, logged: bool) -> Result<(), String> {
+fn reachable(at: SocketAddr, users: bool, logged: bool) -> Result<(), Said> {
     if at.ip().is_loopback() {
         return Ok(());
     }
     if !users {
-        let here = "or listen at 127.0.0.1";
-        return Err(format!("{at} is reached from other machines, and there are no users: {USERS}, {here}"));
+        let what = say!("{} is reached from other machines, and there are no users", raw(at));
+        return Err(say!("{what}: {}, or listen at 127.0.0.1", users_way()));
     }
     if !logged {
         return Err(unlogged(&at));

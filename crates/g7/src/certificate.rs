@@ -11,7 +11,9 @@ use g7_host::{utc_day, utc_millis};
 use rcgen::{CertificateParams, DnType, ExtendedKeyUsagePurpose, KeyPair, KeyUsagePurpose, date_time_ymd};
 use sha2::{Digest as _, Sha256};
 
-use crate::failure::{Failure, Verdict};
+use g7_model::say;
+
+use crate::failure::{Failure, Verdict, raw};
 use crate::files;
 use crate::message::talk;
 
@@ -56,9 +58,9 @@ pub(crate) fn certificate(args: &Cert) -> Result<Verdict, Failure> {
         }
     }
     if let Some(wrong) = names.iter().find(|name| !is_name(name)) {
-        return Err(Failure::Usage(format!("`{wrong}` is no name or address of a machine")));
+        return Err(Failure::Usage(say!("`{wrong}` is no name or address of a machine")));
     }
-    let failed = |e: rcgen::Error| Failure::Usage(format!("no certificate can be made: {e}"));
+    let failed = |e: rcgen::Error| Failure::Usage(say!("no certificate can be made: {e}", e = raw(&e)));
     let today = utc_millis() / 1_000;
     let mut params = CertificateParams::new(names.clone()).map_err(failed)?;
     // A clock that is a day behind is no reason to refuse it.

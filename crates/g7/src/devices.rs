@@ -5,7 +5,7 @@ use std::path::PathBuf;
 
 use clap::Args;
 use g7_host::Value;
-use g7_model::{Nanos, Span};
+use g7_model::{Nanos, Span, say};
 use g7_online::ask as wait;
 use g7_online::setup::{
     Address, At, Broker, Device, Encoding, Kind, Listen, Modbus, Parity, Place, Point, Register, S7, Serial,
@@ -16,7 +16,7 @@ use g7_online::{
 };
 
 use crate::brought;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::wiring::{self, Wanted};
 use crate::{files, sources, style, values};
 
@@ -105,7 +105,7 @@ fn word<T: Copy>(text: &str, words: &[(&str, T)]) -> Result<T, String> {
 }
 
 fn point(text: &str) -> Result<Point, String> {
-    match read_point(text)? {
+    match read_point(text).map_err(|why| why.to_string())? {
         point @ (Point::Modbus(_) | Point::S7(_) | Point::Line(_)) => Ok(point),
         Point::Good | Point::Topic(_) | Point::Metric(_) | Point::Panel(_) | Point::Node(_) => {
             Err("this is no point to read by hand".to_owned())
@@ -124,14 +124,14 @@ pub(crate) fn devices(args: &Devices) -> Result<Verdict, Failure> {
     if let Some(device) = by_hand(args)? {
         let mut shown = Vec::new();
         for point in &args.points {
-            shown.extend(many(args, &device.kind, point).map_err(Failure::Usage)?);
+            shown.extend(many(args, &device.kind, point).map_err(|why| Failure::Usage(raw(why)))?);
         }
         return ask(&mut Clients::default(), &device, &shown);
     }
     if !args.points.is_empty() {
-        return Err(Failure::Usage(
-            "--read asks one device: name it by --tcp, --serial, --s7 or --gpio".to_owned(),
-        ));
+        return Err(Failure::Usage(say!(
+            "--read asks one device: name it by --tcp, --serial, --s7 or --gpio"
+        )));
     }
     let path = files::one(&args.path)?;
     let source = sources::load(&path, 0)?;
@@ -188,7 +188,7 @@ fn by_hand(args: &Devices) -> Result<Option<Device>, Failure> {
     let setup = Setup { devices: vec![device.clone()], ..Setup::default() };
     if let Some(problem) = g7_online::lacking(&setup).first() {
         let help = problem.help.clone().unwrap_or_default();
-        return Err(Failure::Usage(format!("{}: {help}", problem.what)));
+        return Err(Failure::Usage(say!("{}: {help}", problem.what)));
     }
     Ok(Some(device))
 }
@@ -199,7 +199,8 @@ fn place(text: &str, usual: u16) -> Result<(String, u16), Failure> {
         Some((host, port)) => (host, port.parse().ok()),
         None => (text, Some(usual)),
     };
-    let port = port.ok_or_else(|| Failure::Usage(format!("{text}: the port is no number")))?;
+    let port =
+        port.ok_or_else(|| Failure::Usage(say!("{text}: the port is no number", text = raw(&text))))?;
     Ok((host.trim_matches(['[', ']']).to_owned(), port))
 }
 

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use g7_model::codes;
+use g7_model::{codes, say};
 
 use crate::cli::Explain;
 use crate::failure::{Failure, Verdict};
@@ -19,7 +19,7 @@ pub(crate) fn explain(args: &Explain) -> Result<Verdict, Failure> {
         return Ok(out.flush().map(|()| Verdict::Fine)?);
     };
     let Some(text) = g7_page::explain(id, language) else {
-        return Err(Failure::Usage(format!("there is no problem `{id}`; `g7 explain` lists them all")));
+        return Err(Failure::Usage(say!("there is no problem `{id}`; `g7 explain` lists them all")));
     };
     write!(out, "{text}")?;
     Ok(out.flush().map(|()| Verdict::Fine)?)

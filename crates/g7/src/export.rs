@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use g7_exchange::{Dialect, FORMATS, Format};
-use g7_model::Severity;
+use g7_model::{Severity, say};
 
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::{files, sources};
@@ -95,9 +95,9 @@ pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Fail
     files::refuse_source(args.output.as_deref(), &[&path])?;
     files::refuse_present(args.output.as_deref(), args.force)?;
     if args.compare && !to.is_read() {
-        return Err(Failure::Usage(format!(
+        return Err(Failure::Usage(say!(
             "{} is not read back: there is nothing to compare with",
-            to.title
+            raw(to.title)
         )));
     }
     let mut problems = source.problems.clone();
@@ -110,11 +110,11 @@ pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Fail
     }
     let written = match args.dialect {
         Some(tool) => to.write_in(&source.document, tool.0).ok_or_else(|| {
-            Failure::Usage(format!("{} has no dialects; --dialect is for PLCopen XML", to.title))
+            Failure::Usage(say!("{} has no dialects; --dialect is for PLCopen XML", raw(to.title)))
         })?,
         None => to
             .write(&source.document)
-            .ok_or_else(|| Failure::Usage(format!("{} is not written", to.title)))?,
+            .ok_or_else(|| Failure::Usage(say!("{} is not written", raw(to.title))))?,
     };
     let lost = written.problems.iter().any(|p| p.severity() == Severity::Error);
     if !written.problems.is_empty() {
@@ -147,6 +147,6 @@ fn form(args: &Export) -> Result<&'static Format, Failure> {
     };
     args.to.map(|form| form.0).or_else(|| by_name(args.output.as_ref()?)).ok_or_else(|| {
         let words: Vec<&str> = FORMATS.iter().filter(|f| f.is_written()).map(|f| f.word).collect();
-        Failure::Usage(format!("say the form with --to: {}", words.join(", ")))
+        Failure::Usage(say!("say the form with --to: {}", raw(words.join(", "))))
     })
 }

@@ -6,7 +6,9 @@ use std::fs;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
+use g7_model::say;
+
+use crate::failure::{Failure, raw};
 use crate::message::talk;
 use crate::style;
 
@@ -75,7 +77,10 @@ pub(crate) fn refuse_foreign(output: Option<&Path>, from: &[&Path], force: bool)
     refuse_source(Some(output), from)?;
     if output.is_file() && !force && !is_ours(output) {
         let name = output.display();
-        return Err(Failure::Usage(format!("{name} is there, and g7 did not write it; --force replaces it")));
+        return Err(Failure::Usage(say!(
+            "{name} is there, and g7 did not write it; --force replaces it",
+            name = raw(&name)
+        )));
     }
     Ok(())
 }
@@ -84,10 +89,10 @@ pub(crate) fn refuse_foreign(output: Option<&Path>, from: &[&Path], force: bool)
 pub(crate) fn refuse_source(output: Option<&Path>, from: &[&Path]) -> Result<(), Failure> {
     let Some(output) = output else { return Ok(()) };
     match from.iter().find(|from| is_same(output, from)) {
-        Some(from) => Err(Failure::Usage(format!(
+        Some(from) => Err(Failure::Usage(say!(
             "{} is {} itself, which the output is made of; nothing was changed",
-            output.display(),
-            from.display()
+            raw(output.display()),
+            raw(from.display())
         ))),
         None => Ok(()),
     }
@@ -96,7 +101,7 @@ pub(crate) fn refuse_source(output: Option<&Path>, from: &[&Path]) -> Result<(),
 /// Refuses to overwrite an existing output file without `force`.
 pub(crate) fn refuse_present(output: Option<&Path>, force: bool) -> Result<(), Failure> {
     match output.filter(|o| o.is_file() && !force) {
-        Some(o) => Err(Failure::Usage(format!("{} already exists; --force replaces it", o.display()))),
+        Some(o) => Err(Failure::Usage(say!("{} already exists; --force replaces it", raw(o.display())))),
         None => Ok(()),
     }
 }
@@ -143,11 +148,11 @@ pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     }
     match found.len() {
         1 => Ok(found.remove(0)),
-        0 => Err(Failure::Usage(format!("{} has no .g7 file; `g7 new` makes one", path.display()))),
-        n => Err(Failure::Usage(format!(
+        0 => Err(Failure::Usage(say!("{} has no .g7 file; `g7 new` makes one", raw(path.display())))),
+        n => Err(Failure::Usage(say!(
             "{} has {n} .g7 files and none of its own is called chart.g7: name the one you mean, as in {}",
-            path.display(),
-            found.first().map_or(path, |p| p).display()
+            raw(path.display()),
+            raw(found.first().map_or(path, |p| p).display())
         ))),
     }
 }
@@ -168,7 +173,7 @@ pub(crate) fn all(paths: &[PathBuf]) -> Result<Vec<PathBuf>, Failure> {
         let before = found.len();
         walk(path, &mut found, 0)?;
         if found.len() == before {
-            return Err(Failure::Usage(format!("{} has no .g7 file", path.display())));
+            return Err(Failure::Usage(say!("{} has no .g7 file", raw(path.display()))));
         }
     }
     let mut seen = HashSet::new();

@@ -3,8 +3,10 @@
 use std::io::Write;
 use std::path::Path;
 
+use g7_model::say;
+
 use crate::cli::Fmt;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources;
@@ -17,9 +19,9 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
     for path in &paths {
         let source = sources::load(path, 0)?;
         if source.format.is_some() {
-            return Err(Failure::Usage(format!(
+            return Err(Failure::Usage(say!(
                 "{} is a file of another tool; `g7 import` makes a .g7 file of it",
-                source.name
+                raw(&source.name)
             )));
         }
         if source.has_errors() {

@@ -6,10 +6,10 @@ use std::process::{Command, Stdio};
 
 use clap::Args;
 use g7_codegen::fmu::{Fmu as Files, Version};
-use g7_model::ProfileName;
+use g7_model::{ProfileName, say};
 use zip::write::SimpleFileOptions;
 
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::scratch::Scratch;
 use crate::{files, style, values};
@@ -68,7 +68,7 @@ pub(crate) fn pack(args: &Fmu, name: &str, made: &Files) -> Result<Verdict, Fail
     let to = args.output.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.fmu")));
     files::refuse_source(Some(&to), &[&files::one(&args.file)?])?;
     if to.exists() && !args.force {
-        return Err(Failure::Usage(format!("{} already exists; --force replaces it", to.display())));
+        return Err(Failure::Usage(say!("{} already exists; --force replaces it", raw(to.display()))));
     }
     let library = if args.sources { None } else { library(args.fmi.into(), made)? };
     let mut entries: Vec<(String, Vec<u8>)> =
@@ -127,13 +127,16 @@ fn library(version: Version, made: &Files) -> Result<Option<(String, Vec<u8>)>, 
     if !cfg!(windows) {
         command.arg("-lm");
     }
-    let out = command.output().map_err(|e| Failure::Usage(format!("{compiler}: {e}")))?;
+    let out = command
+        .output()
+        .map_err(|e| Failure::Usage(say!("{compiler}: {e}", compiler = raw(&compiler), e = raw(&e))))?;
     if !out.status.success() {
         let said = String::from_utf8_lossy(&out.stderr);
         let said: Vec<&str> = said.lines().take(10).collect();
-        return Err(Failure::Usage(format!(
-            "{compiler} does not compile the code; --sources packs it as it is:\n{}",
-            said.join("\n")
+        return Err(Failure::Usage(say!(
+            "{compiler} does not compile the code; --sources packs it as it is:{}",
+            raw(format!("\n{}", said.join("\n"))),
+            compiler = raw(&compiler)
         )));
     }
     let bytes = files::read(&scratch.path().join(&file))?;

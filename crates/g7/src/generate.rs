@@ -8,9 +8,9 @@ use g7_codegen::{
     BOARDS, Board, Clock, File, Language, Options, Parts, Project, Room, Sizes, Style, file_name, is_own,
     plc, with_project,
 };
-use g7_model::{Problem, ProfileName, Severity};
+use g7_model::{Problem, ProfileName, Severity, say};
 
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::Source;
@@ -189,19 +189,21 @@ impl Code {
         };
         let room = Room { small: self.small || usual.small, clock };
         if matches!(style, Style::Flat) && room != Room::default() {
-            let why = "--small and --time-unit are for the structured style";
-            return Err(Failure::Usage(why.to_owned()));
+            let why = say!("--small and --time-unit are for the structured style");
+            return Err(Failure::Usage(why));
         }
         if self.whole && matches!(language, Language::Rust) {
-            return Err(Failure::Usage("--whole is for C: a Rust module is one file anyway".to_owned()));
+            return Err(Failure::Usage(say!("--whole is for C: a Rust module is one file anyway")));
         }
         let project = match (self.project, language) {
             (None, _) => None,
             (Some(Tool::Cmake), Language::C) => Some(Project::Cmake),
             (Some(Tool::Cargo), Language::Rust) => Some(Project::Cargo),
             (Some(_), _) => {
-                let why = "--project cmake is for `gen c`, --project cargo for `gen rust`; a sketch has its platformio.ini";
-                return Err(Failure::Usage(why.to_owned()));
+                let why = say!(
+                    "--project cmake is for `gen c`, --project cargo for `gen rust`; a sketch has its platformio.ini"
+                );
+                return Err(Failure::Usage(why));
             }
         };
         let parts = match self.what.output {
@@ -430,9 +432,7 @@ fn controller(tongue: Tongue, what: &What) -> Result<Verdict, Failure> {
     };
     let name = what.name.clone().unwrap_or_else(|| name_of(&path));
     if tongue.has_main() && file_name(&name) == "main" {
-        return Err(Failure::Usage(
-            "main.c is the program round the chart: choose another --name".to_owned(),
-        ));
+        return Err(Failure::Usage(say!("main.c is the program round the chart: choose another --name")));
     }
     match tongue.print(&compiled, &name, &source.text) {
         Ok(Written { files, problems, sizes }) => {
@@ -478,7 +478,7 @@ fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
     let is_kept = |file: &File, path: &Path| is_same(file, path) || (is_own(&file.name) && path.exists());
     let new: Vec<(&File, PathBuf)> = paths.filter(|(f, p)| !is_kept(f, p)).collect();
     if let Some((_, there)) = new.iter().find(|(_, p)| p.exists() && !what.force) {
-        return Err(Failure::Usage(format!("{} already exists; --force replaces it", there.display())));
+        return Err(Failure::Usage(say!("{} already exists; --force replaces it", raw(there.display()))));
     }
     let from = files::one(&what.file)?;
     new.iter().try_for_each(|(_, path)| files::refuse_source(Some(path), &[&from]))?;

@@ -1,7 +1,9 @@
 //! `g7 import`: converts a file of another tool to a .g7 file.
 
+use g7_model::say;
+
 use crate::cli::Import;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::files;
 use crate::message::talk;
 use crate::prove;
@@ -11,9 +13,9 @@ use crate::sources;
 pub(crate) fn import(args: &Import) -> Result<Verdict, Failure> {
     let source = sources::load(&args.file, 0)?;
     if source.format.is_none() {
-        return Err(Failure::Usage(format!(
+        return Err(Failure::Usage(say!(
             "{} is not a file of another tool that g7 can read",
-            source.name
+            raw(&source.name)
         )));
     }
     files::refuse_source(args.output.as_deref(), &[&args.file])?;

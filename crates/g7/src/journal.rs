@@ -8,7 +8,9 @@ use g7_host::{utc_of, utc_text};
 use g7_store::log::{Broken, Checked, Filter, Mark, Reader, Row};
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, Verdict};
+use g7_model::say;
+
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::wiring;
 
@@ -71,7 +73,7 @@ enum Form {
 
 pub(crate) fn journal(args: &Journal) -> Result<Verdict, Failure> {
     let path = path(&args.file)?;
-    let failed = |e| Failure::Usage(format!("cannot read {} as a log: {e}", path.display()));
+    let failed = |e| Failure::Usage(say!("cannot read {} as a log: {e}", raw(path.display()), e = raw(&e)));
     if !path.is_file() {
         return Err(Failure::Read(path, std::io::ErrorKind::NotFound.into()));
     }
@@ -119,10 +121,10 @@ fn path(file: &Path) -> Result<PathBuf, Failure> {
     let io = if ends("g7") { wiring::io_file(file, None) } else { file.to_path_buf() };
     match wiring::settings(&io).controller.log {
         Some(log) => Ok(io.with_file_name(&log.file.value)),
-        None => {
-            let what = format!("{} names no log", io.display());
-            Err(Failure::Usage(format!("{what}: write `log = \"machine.log\"` in its [controller]")))
-        }
+        None => Err(Failure::Usage(say!(
+            "{} names no log: write `log = \"machine.log\"` in its [controller]",
+            raw(io.display())
+        ))),
     }
 }
 

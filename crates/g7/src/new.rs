@@ -4,8 +4,10 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
+use g7_model::say;
+
 use crate::cli::New;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::files;
 use crate::message::talk;
 
@@ -17,9 +19,9 @@ pub(crate) fn new(args: &New) -> Result<Verdict, Failure> {
     match fs::read_dir(folder) {
         Ok(mut entries) => {
             if entries.next().is_some() {
-                return Err(Failure::Usage(format!(
+                return Err(Failure::Usage(say!(
                     "{} is not empty; nothing was changed",
-                    folder.display()
+                    raw(folder.display())
                 )));
             }
         }

@@ -4,12 +4,12 @@ use std::net::IpAddr;
 use std::path::PathBuf;
 
 use clap::Args;
-use g7_model::{Item, Nanos};
+use g7_model::{Item, Nanos, say};
 use g7_online::{Clients, Command, Options as Threads};
 use g7_rig::Options;
 
 use crate::attendant::Attendant;
-use crate::failure::{Failure, Verdict, refused};
+use crate::failure::{Failure, Verdict, raw, refused};
 use crate::message::talk;
 use crate::operator::Names;
 use crate::wiring::{self, Wanted};
@@ -68,11 +68,11 @@ pub(crate) fn plant(args: &Plant) -> Result<Verdict, Failure> {
     let options = Options { plant: args.plant.as_deref(), ..Options::default() };
     let Some(bench) = wiring::build(&source, &options)? else { return Ok(Verdict::Found) };
     if bench.plant.is_none() {
-        return Err(Failure::Usage(format!("{} has no plant", source.name)));
+        return Err(Failure::Usage(say!("{} has no plant", raw(&source.name))));
     }
-    let wiring = g7_online::mirror(&bench, &wired, args.listen).map_err(Failure::Usage)?;
+    let wiring = g7_online::mirror(&bench, &wired, args.listen).map_err(|why| Failure::Usage(raw(why)))?;
     if wiring.devices.is_empty() {
-        return Err(Failure::Usage("the io file has no device of Modbus TCP".to_owned()));
+        return Err(Failure::Usage(say!("the io file has no device of Modbus TCP")));
     }
     for wired in &wired.devices {
         if let g7_online::setup::Kind::Mqtt(_) = &wired.device.kind {

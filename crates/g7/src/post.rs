@@ -19,7 +19,9 @@ use g7_online::{Clients, Letter, Mail, Wiring};
 use g7_store::{Limits, Outbox, Waiting};
 use serde_json::{Value, json};
 
-use crate::failure::{Failure, refused};
+use g7_model::say;
+
+use crate::failure::{Failure, raw, refused};
 
 /// The pause between two looks at what a broker has taken.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -50,7 +52,11 @@ impl Post {
             let path = io.with_file_name(&file.value);
             let outbox = Outbox::open(&path, Limits { count: *most, bytes: *bytes }).map_err(|e| {
                 let name = path.display();
-                Failure::Usage(format!("cannot use {name} for `events`: {e}; move it away to begin anew"))
+                Failure::Usage(say!(
+                    "cannot use {name} for `events`: {e}; move it away to begin anew",
+                    name = raw(&name),
+                    e = raw(&e)
+                ))
             })?;
             keepers.push(Keeper::new(device, outbox, clients.mail(&wired.device.name.value)));
         }

@@ -1,8 +1,9 @@
 //! Prints problems, for people and for programs.
 
+use crate::failure::raw;
 use crate::tongue::language;
 use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Origin, Renderer, Snippet};
-use g7_model::{Fix, Problem, Severity, Span, TextEdit};
+use g7_model::{Fix, Problem, Severity, Span, TextEdit, say};
 use g7_rig::testing::Unproved;
 use serde_json::{Value, json};
 
@@ -39,20 +40,26 @@ impl Tally {
 
 impl std::fmt::Display for Tally {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let some = |n: usize, what: &str| match n {
-            0 => String::new(),
-            1 => format!("1 {what}"),
-            n => format!("{n} {what}s"),
+        let errors = match self.errors {
+            0 => None,
+            1 => Some(say!("1 error")),
+            n => Some(say!("{n} errors")),
         };
-        let parts = [some(self.errors, "error"), some(self.warnings, "warning")];
-        f.write_str(&parts.iter().filter(|p| !p.is_empty()).cloned().collect::<Vec<_>>().join(", "))
+        let warnings = match self.warnings {
+            0 => None,
+            1 => Some(say!("1 warning")),
+            n => Some(say!("{n} warnings")),
+        };
+        let parts: Vec<String> =
+            errors.into_iter().chain(warnings).map(|part| part.in_language(language())).collect();
+        f.write_str(&parts.join(", "))
     }
 }
 
 /// A line for each property that another command asks.
 pub(crate) fn unproved(list: &[Unproved]) -> String {
-    let line =
-        |p: &Unproved| format!("{}: {}left to g7 prove{:#}: {}\n", p.place, style::WARN, style::WARN, p.text);
+    let left = say!("left to g7 prove").in_language(language());
+    let line = |p: &Unproved| format!("{}: {}{left}{:#}: {}\n", p.place, style::WARN, style::WARN, p.text);
     list.iter().map(line).collect()
 }
 
@@ -71,7 +78,8 @@ pub(crate) fn text(source: &Source, problems: &[Problem]) -> String {
         out.push_str("\n\n");
     }
     if sorted.len() > MANY {
-        out.push_str(&format!("… and {} more problems in {}\n\n", sorted.len() - MANY, source.name));
+        let more = say!("… and {} more problems in {}", sorted.len() - MANY, raw(&source.name));
+        out.push_str(&format!("{}\n\n", more.in_language(language())));
     }
     out
 }

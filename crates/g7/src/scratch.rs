@@ -2,7 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
+use g7_model::say;
+
+use crate::failure::{Failure, raw};
 
 /// The folder, with all that is in it. It is deleted at the end.
 pub(crate) struct Scratch(PathBuf);
@@ -15,7 +17,8 @@ impl Scratch {
     /// The system gives no random numbers, or the folder cannot be made.
     pub(crate) fn new() -> Result<Scratch, Failure> {
         let mut bytes = [0; 8];
-        getrandom::fill(&mut bytes).map_err(|e| Failure::Usage(format!("no random numbers: {e}")))?;
+        getrandom::fill(&mut bytes)
+            .map_err(|e| Failure::Usage(say!("no random numbers: {e}", e = raw(&e))))?;
         let folder = std::env::temp_dir().join(format!("g7-{:016x}", u64::from_le_bytes(bytes)));
         std::fs::create_dir(&folder).map_err(|e| Failure::Write(folder.clone(), e))?;
         Ok(Scratch(folder))

@@ -7,7 +7,9 @@ use std::ffi::OsString;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
-use crate::failure::{Failure, plain};
+use g7_model::{Said, say};
+
+use crate::failure::{Failure, plain, raw};
 
 /// A file that no other controller can use as long as this lives.
 #[derive(Debug)]
@@ -22,15 +24,15 @@ pub(crate) struct Sole {
 /// Another controller uses it, or no file can be made beside it.
 pub(crate) fn claim(path: &Path) -> Result<Sole, Failure> {
     let beside = beside(path);
-    let cannot = |why: &str| Failure::Usage(format!("cannot use {}: {why}", path.display()));
+    let cannot = |why: Said| Failure::Usage(say!("cannot use {}: {why}", raw(path.display())));
     let lock = OpenOptions::new().create(true).truncate(false).write(true).open(&beside);
-    let lock = lock.map_err(|e| cannot(&format!("{} cannot be made: {}", beside.display(), plain(&e))))?;
+    let lock = lock.map_err(|e| cannot(say!("{} cannot be made: {}", raw(beside.display()), plain(&e))))?;
     match lock.try_lock() {
         Ok(()) => Ok(Sole { _lock: lock }),
-        Err(TryLockError::WouldBlock) => {
-            Err(cannot("another controller uses it; stop that one, or name another file in the io file"))
-        }
-        Err(TryLockError::Error(e)) => Err(cannot(&format!("it cannot be locked: {}", plain(&e)))),
+        Err(TryLockError::WouldBlock) => Err(cannot(say!(
+            "another controller uses it; stop that one, or name another file in the io file"
+        ))),
+        Err(TryLockError::Error(e)) => Err(cannot(say!("it cannot be locked: {}", plain(&e)))),
     }
 }
 

@@ -3,10 +3,10 @@
 use std::path::Path;
 
 use g7_exchange::FORMATS;
-use g7_model::words;
+use g7_model::{Said, say, words};
 pub(crate) use g7_rig::Source;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::files;
 
 /// Reads a .g7 file or a file of another tool. The content decides which one it is, otherwise the
@@ -25,10 +25,10 @@ pub(crate) fn load(path: &Path, id: u32) -> Result<Source, Failure> {
 }
 
 /// Why a file is of no form, without its name.
-fn no_form() -> String {
+fn no_form() -> Said {
     let mut titles: Vec<&str> = FORMATS.iter().filter(|f| f.is_read()).map(|f| f.title).collect();
     titles.dedup();
-    format!("this is no .g7 file, and none of a tool that g7 reads ({})", titles.join(", "))
+    say!("this is no .g7 file, and none of a tool that g7 reads ({})", raw(titles.join(", ")))
 }
 
 /// True if a file begins with no word of a .g7 file, and has errors as one.

@@ -5,14 +5,14 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use clap::Args;
-use g7_model::{Nanos, ProfileName};
+use g7_model::{Nanos, ProfileName, say};
 use g7_online::setup::{Kind, Setup};
 use g7_online::{Command, KeepError, Options, Panels, RealDisk, Running, Sight, Slots, Started};
 use g7_store::log::Log;
 
 use crate::audit::{self, Audit};
 use crate::brought;
-use crate::failure::{Failure, plain, refused};
+use crate::failure::{Failure, plain, raw, refused};
 use crate::history::{self, Historian};
 use crate::message::talk;
 use crate::monitor::Monitor;
@@ -122,7 +122,7 @@ pub(crate) fn start(
     let monitor = match &setup.controller.metrics {
         None => None,
         Some(at) => Some(Monitor::serve(at.value).map_err(|e| {
-            Failure::Usage(format!("cannot listen at {} for `metrics`: {}", at.value, plain(&e)))
+            Failure::Usage(say!("cannot listen at {} for `metrics`: {}", raw(at.value), plain(&e)))
         })?),
     };
     let claims = claims(&plan)?;
@@ -184,11 +184,13 @@ fn kept(plan: &Plan, runner: g7_host::Runner) -> Result<(g7_host::Runner, Option
         Err(e) => {
             let way = match e {
                 KeepError::Changed => {
-                    "`changed = \"fit\"` in [controller] takes the retained variables over, \"cold\" begins anew"
+                    say!(
+                        "`changed = \"fit\"` in [controller] takes the retained variables over, \"cold\" begins anew"
+                    )
                 }
-                KeepError::Slots(_) => "move it away to begin anew",
+                KeepError::Slots(_) => say!("move it away to begin anew"),
             };
-            Err(Failure::Usage(format!("cannot use {}: {e}; {way}", path.display())))
+            Err(Failure::Usage(say!("cannot use {}: {e}; {way}", raw(path.display()), e = raw(&e))))
         }
     }
 }

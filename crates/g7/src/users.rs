@@ -11,8 +11,10 @@ use g7_store::log::Log;
 use g7_store::users::{Role, UserError, Users as File};
 use serde_json::{Value, json};
 
+use g7_model::say;
+
 use crate::audit::{self, Audit};
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::who::Who;
 use crate::wiring;
@@ -98,7 +100,7 @@ struct Open {
 }
 
 fn failed(error: UserError) -> Failure {
-    Failure::Usage(error.to_string())
+    Failure::Usage(raw(error))
 }
 
 fn open(at: &In) -> Result<Open, Failure> {
@@ -106,8 +108,9 @@ fn open(at: &In) -> Result<Open, Failure> {
     let log = at.log.clone().or(log);
     let log = log.map(|path| audit::open(&path, None, None)).transpose()?;
     let (log, audit) = log.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
-    let users = File::open(&path)
-        .map_err(|e| Failure::Usage(format!("cannot use {} as the users: {e}", path.display())))?;
+    let users = File::open(&path).map_err(|e| {
+        Failure::Usage(say!("cannot use {} as the users: {e}", raw(path.display()), e = raw(&e)))
+    })?;
     Ok(Open { users, _log: log, audit })
 }
 
@@ -120,8 +123,10 @@ fn paths(file: &Path) -> Result<(PathBuf, Option<PathBuf>), Failure> {
     let io = if ends("g7") { wiring::io_file(file, None) } else { file.to_path_buf() };
     let setup = wiring::settings(&io);
     let Some(users) = &setup.server.users else {
-        let what = format!("{} names no file of users", io.display());
-        return Err(Failure::Usage(format!("{what}: write `users = \"g7.users\"` in its [server]")));
+        return Err(Failure::Usage(say!(
+            "{} names no file of users: write `users = \"g7.users\"` in its [server]",
+            raw(io.display())
+        )));
     };
     let log = setup.controller.log.as_ref().map(|log| io.with_file_name(&log.file.value));
     Ok((io.with_file_name(&users.value), log))
@@ -135,7 +140,7 @@ impl Open {
         data: &Value,
         work: impl FnOnce(&File) -> Result<(), UserError>,
     ) -> Result<(), Failure> {
-        self.audit.must(&Who::console(), kind, data).map_err(Failure::Usage)?;
+        self.audit.must(&Who::console(), kind, data).map_err(|why| Failure::Usage(raw(why)))?;
         work(&self.users).map_err(failed)
     }
 }
@@ -200,7 +205,7 @@ fn password(name: &str) -> Result<String, Failure> {
     }
     let first = typed(&format!("password for {name}: "))?;
     if typed("once more: ")? != first {
-        return Err(Failure::Usage("the two are not the same; nothing was changed".to_owned()));
+        return Err(Failure::Usage(say!("the two are not the same; nothing was changed")));
     }
     Ok(first)
 }
@@ -228,7 +233,7 @@ fn typed(ask: &str) -> Result<String, Failure> {
             KeyCode::Enter => return Ok(line),
             KeyCode::Backspace => drop(line.pop()),
             KeyCode::Char('c' | 'd') if key.modifiers.contains(KeyModifiers::CONTROL) => {
-                return Err(Failure::Usage("nothing was changed".to_owned()));
+                return Err(Failure::Usage(say!("nothing was changed")));
             }
             KeyCode::Char(sign) => line.push(sign),
             _ => {}

@@ -2,12 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
-use g7_model::{FileId, Nanos, Problem, ProfileName, Severity};
+use g7_model::{FileId, Nanos, Problem, ProfileName, Said, Severity, say};
 use g7_online::Wiring;
 use g7_online::setup::{self, Channel, Kind, Origin, Setup};
 use g7_rig::{Bench, Options};
 
-use crate::failure::{Failure, plain};
+use crate::failure::{Failure, plain, raw};
 use crate::files;
 use crate::message::talk;
 use crate::report::{self, Tally};
@@ -62,15 +62,16 @@ pub(crate) fn make(
 ) -> Result<(Option<Plan>, String), Failure> {
     let io = io_file(path, wanted.io);
     if wanted.io.is_none() && !io.is_file() {
-        let what =
-            format!("{} is missing: it says which devices the inputs and outputs are wired to", io.display());
-        return Err(Failure::Usage(format!("{what}; --io names another file")));
+        return Err(Failure::Usage(say!(
+            "{} is missing: it says which devices the inputs and outputs are wired to; --io names another file",
+            raw(io.display())
+        )));
     }
     let text = files::read(&io)?;
     let file = Source::plain(&io.display().to_string(), text);
     let (mut setup, mut problems) = setup::read(&file.text, FileId(1));
     if file.text.as_bytes() != file.bytes {
-        return Err(Failure::Usage(format!("{} is not UTF-8 text", io.display())));
+        return Err(Failure::Usage(say!("{} is not UTF-8 text", raw(io.display()))));
     }
     let simulated = simulate(&mut setup, wanted.simulate)?;
     if wanted.simulate.is_none() {
@@ -94,15 +95,15 @@ pub(crate) fn make(
 }
 
 /// The bytes of a password, certificate or key, which is never in the io file.
-pub(crate) fn secret(io: &Path, origin: &Origin) -> Result<Vec<u8>, String> {
+pub(crate) fn secret(io: &Path, origin: &Origin) -> Result<Vec<u8>, Said> {
     match origin {
         Origin::File(name) => {
             let path = io.with_file_name(name);
-            std::fs::read(&path).map_err(|e| format!("{}: {}", path.display(), plain(&e)))
+            std::fs::read(&path).map_err(|e| Said::foreign(format!("{}: {}", path.display(), plain(&e))))
         }
         Origin::Variable(name) => std::env::var_os(name)
             .map(std::ffi::OsString::into_encoded_bytes)
-            .ok_or_else(|| format!("the environment has no variable {name}")),
+            .ok_or_else(|| say!("the environment has no variable {}", Said::foreign(name))),
     }
 }
 
@@ -113,9 +114,9 @@ fn simulate(setup: &mut Setup, names: Option<&[String]>) -> Result<Vec<String>, 
     let there = |name: &String| setup.devices.iter().any(|d| d.name.value == *name);
     if let Some(name) = names.iter().find(|name| !there(name)) {
         let all: Vec<&str> = setup.devices.iter().map(|d| d.name.value.as_str()).collect();
-        return Err(Failure::Usage(format!(
+        return Err(Failure::Usage(say!(
             "--simulate: the io file has no device `{name}`; it has {}",
-            all.join(", ")
+            raw(all.join(", "))
         )));
     }
     // A panel is no part of the machine: the plant does not stand for it unless it is named.

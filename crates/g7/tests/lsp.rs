@@ -455,3 +455,24 @@ fn problems_are_told_in_the_language_of_the_editor() {
         assert!(told.contains(word), "{locale:?}: {told}");
     }
 }
+
+#[test]
+fn kinds_of_parts_and_refused_names_are_told_in_the_language_of_the_editor() {
+    let text = TEXT.replacen("chart Main", "action Fill { V := TRUE }\nchart Main", 1);
+    let line = text.lines().position(|l| l.starts_with("action")).expect("the action");
+    let arrow = text.lines().position(|l| l.starts_with("  0 -> 1")).expect("the transition");
+    for (locale, kind, shape, refused) in [
+        (None, "action `Fill`", "transition from `0` to `1`", "there is a variable `V` already"),
+        (Some("fr"), "action `Fill`", "transition de `0` vers `1`", "il y a déjà une variable `V`"),
+        (Some("pt"), "ação `Fill`", "transição de `0` para `1`", "já há uma variável `V`"),
+    ] {
+        let mut editor = Editor::speaking(locale).opened(URI, &text);
+        let said = editor.at("textDocument/hover", line as u32, 8)["contents"]["value"].to_string();
+        assert!(said.contains(kind), "{locale:?}: {said}");
+        let said = editor.at("textDocument/hover", arrow as u32, 5)["contents"]["value"].to_string();
+        assert!(said.contains(shape), "{locale:?}: {said}");
+        let params = json!({ "textDocument": { "uri": URI }, "position": { "line": 0, "character": 6 }, "newName": "V" });
+        let told = editor.answer("textDocument/rename", params).to_string();
+        assert!(told.contains(refused), "{locale:?}: {told}");
+    }
+}

@@ -13,7 +13,7 @@ use crate::file::File;
 /// The change that a gesture would make.
 pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
     let stand = standing(&file.source.document);
-    g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.to_string())
+    g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.in_language(file.language))
 }
 
 /// A part of a chart as text, with the places of its symbols.

@@ -70,7 +70,10 @@ fn explain_sign(file: &File, sign: &Range<usize>) -> (Option<String>, Option<&'s
     let word = match file.text().get(sign.clone()) {
         Some("↑" | "^") => "rise",
         Some("↓") => "fall",
-        _ => return rules::of_arrow(&file.source.document, sign.start).unzip(),
+        _ => {
+            let told = rules::of_arrow(&file.source.document, sign.start);
+            return told.map(|(said, case)| (said.in_language(file.language), case)).unzip();
+        }
     };
     (explain(word, file.language), rules::of_word(word))
 }
@@ -109,7 +112,24 @@ fn describe(n: &Named<'_>, language: Language) -> String {
             let head = say!("{kind} `{name}`: {steps} steps, {transitions} transitions");
             with(head, c.comment.as_deref())
         }
-        Meaning::Other(what, comment) => with(say!("{} `{name}`", Said::foreign(what)), comment),
+        Meaning::Other(what, comment) => with(say!("{} `{name}`", sort(what)), comment),
+    }
+}
+
+/// The word for the kind of a name (see [`crate::names`]).
+fn sort(what: &'static str) -> Said {
+    match what {
+        "action" => say!("action"),
+        "transition section" => say!("transition section"),
+        "function" => say!("function"),
+        "parameter" => say!("parameter"),
+        "plant" => say!("plant"),
+        "transition" => say!("transition"),
+        "constant of the plant" => say!("constant of the plant"),
+        "state of the plant" => say!("state of the plant"),
+        "parts of the plant" => say!("parts of the plant"),
+        "arrivals of the plant" => say!("arrivals of the plant"),
+        other => Said::foreign(other),
     }
 }
 

@@ -53,7 +53,9 @@ pub fn changeable(file: &File, at: usize) -> Option<(Range<usize>, String)> {
 
 /// The change that gives the part named at a byte another name, or why it cannot have it.
 pub fn rename(file: &File, at: usize, to: &str) -> Result<Vec<Splice>, String> {
-    g7_edit::rename_at(&file.as_edited(), at, to).map(|edit| edit.splices).map_err(|e| e.to_string())
+    g7_edit::rename_at(&file.as_edited(), at, to)
+        .map(|edit| edit.splices)
+        .map_err(|e| e.in_language(file.language))
 }
 
 fn offset(at: usize) -> u32 {

@@ -2,7 +2,7 @@
 //!
 //! Here stand only the names of the cases, which the page ships too; [`crate::cases`] holds their texts.
 
-use g7_model::{Document, Qualifier, Transition};
+use g7_model::{Document, Qualifier, Said, Transition, say};
 
 /// The case of each qualifier.
 pub const OF_QUALIFIERS: &[(Qualifier, &str)] = &[
@@ -87,25 +87,21 @@ pub(crate) fn of_word(word: &str) -> Option<&'static str> {
 }
 
 /// The transition whose arrow stands at a byte, in words, and its case.
-pub(crate) fn of_arrow(document: &Document, byte: usize) -> Option<(String, &'static str)> {
+pub(crate) fn of_arrow(document: &Document, byte: usize) -> Option<(Said, &'static str)> {
     let all = document.charts().flat_map(g7_model::Chart::transitions);
     // Of a chain, the last one that begins before the arrow.
     let inside = all.filter(|t| t.at.0.bytes().contains(&byte)).min_by_key(|t| t.at.0.bytes().len())?;
     let Transition { from, to, .. } = inside;
-    let (what, shape) = match (from.len(), to.len()) {
-        (0, _) => ("source transition", 0),
-        (_, 0) => ("sink transition", 1),
-        (2.., _) => ("transition that joins", 2),
-        (_, 2..) => ("transition that forks", 3),
-        _ => ("transition", 4),
-    };
     let names = |steps: &[g7_model::Name]| {
-        steps.iter().map(|s| format!("`{}`", s.text)).collect::<Vec<_>>().join(", ")
+        Said::foreign(steps.iter().map(|s| format!("`{}`", s.text)).collect::<Vec<_>>().join(", "))
     };
-    let said = match (from.as_slice(), to.as_slice()) {
-        ([], to) => format!("{what} to {}", names(to)),
-        (from, []) => format!("{what} from {}", names(from)),
-        (from, to) => format!("{what} from {} to {}", names(from), names(to)),
+    let (before, behind) = (names(from), names(to));
+    let (said, shape) = match (from.len(), to.len()) {
+        (0, _) => (say!("source transition to {behind}"), 0),
+        (_, 0) => (say!("sink transition from {before}"), 1),
+        (2.., _) => (say!("transition that joins from {before} to {behind}"), 2),
+        (_, 2..) => (say!("transition that forks from {before} to {behind}"), 3),
+        _ => (say!("transition from {before} to {behind}"), 4),
     };
     Some((said, *OF_TRANSITIONS.get(shape)?))
 }

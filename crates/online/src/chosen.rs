@@ -1,7 +1,7 @@
 //! The table `[history]` held against the chart: which words of a run are recorded.
 
 use g7_host::Kind;
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Said, codes, say};
 use g7_rig::{Bench, Item, Role, StepItem};
 
 use crate::names::{Named, named, source_of};
@@ -55,13 +55,9 @@ pub(crate) fn choose(bench: &Bench, history: &History, problems: &mut Vec<Proble
         Some(names) => {
             for name in names {
                 match of_name(bench, name) {
-                    Ok(signal) if signals.iter().any(|s| s.name == signal.name) => {
-                        problems.push(Problem::new(
-                            &codes::WIRED_TWICE,
-                            name.at,
-                            g7_model::Said::foreign(format!("`{}` is named twice", signal.name)),
-                        ))
-                    }
+                    Ok(signal) if signals.iter().any(|s| s.name == signal.name) => problems.push(
+                        Problem::new(&codes::WIRED_TWICE, name.at, say!("`{}` is named twice", signal.name)),
+                    ),
                     Ok(signal) => signals.push(signal),
                     Err(problem) => problems.push(*problem),
                 }
@@ -69,11 +65,9 @@ pub(crate) fn choose(bench: &Bench, history: &History, problems: &mut Vec<Proble
         }
     }
     if signals.len() > SIGNALS {
-        let what = format!("{} signals are too many: {SIGNALS} can be recorded", signals.len());
-        let mut problem = Problem::new(&codes::BAD_WIRING, history.file.at, g7_model::Said::foreign(what));
-        problem.help = Some(g7_model::Said::foreign(
-            "name those that matter: `signals = [\"start\", \"X3\"]`".to_owned(),
-        ));
+        let what = say!("{} signals are too many: {SIGNALS} can be recorded", signals.len());
+        let mut problem = Problem::new(&codes::BAD_WIRING, history.file.at, what);
+        problem.help = Some(say!("name those that matter: `signals = [\"start\", \"X3\"]`"));
         problems.push(problem);
         signals.truncate(SIGNALS);
     }
@@ -90,8 +84,8 @@ fn of_name(bench: &Bench, name: &At<String>) -> Result<Recorded, Box<Problem>> {
     match named(bench, name)? {
         Named::Step(step) => Ok(of_step(step)),
         Named::Item(item) if item.kind == Kind::Text => {
-            let what = format!("`{}` is a STRING, which cannot be recorded", item.name);
-            Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, g7_model::Said::foreign(what))))
+            let what = say!("`{}` is a STRING, which cannot be recorded", item.name);
+            Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, what)))
         }
         Named::Item(item) => Ok(of_item(bench, item)),
     }
@@ -140,13 +134,11 @@ fn set_band(
         Named::Item(item) => item.name.clone(),
         Named::Step(step) => step.activity(),
     };
-    let wrong = |what: String| {
-        Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, g7_model::Said::foreign(what))))
-    };
+    let wrong = |what: Said| Err(Box::new(Problem::new(&codes::WRONG_CHANNEL, name.at, what)));
     match signals.iter_mut().find(|s| s.name == known) {
-        None => wrong(format!("`{known}` has a deadband and is not recorded")),
+        None => wrong(say!("`{known}` has a deadband and is not recorded")),
         Some(signal) if signal.kind == Kind::Bool => {
-            wrong(format!("`{known}` is a BOOL: only numbers have a deadband"))
+            wrong(say!("`{known}` is a BOOL: only numbers have a deadband"))
         }
         Some(signal) => {
             signal.band = band;

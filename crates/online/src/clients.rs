@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Said, codes, say};
 
 use crate::device::{Device, Failed};
 use crate::mail::Mail;
@@ -119,12 +119,12 @@ pub fn lacking(setup: &Setup) -> Vec<Problem> {
     let wrong = |device: &Wanted| {
         let word = device.kind.word();
         let feature = lacks(word)?;
-        let what = format!("this build of G7 has no devices of the kind \"{word}\"");
-        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, g7_model::Said::foreign(what));
-        let linux = if word == "gpio" { ", for Linux" } else { "" };
-        problem.help = Some(g7_model::Said::foreign(format!(
-            "build it with `cargo install --path crates/g7 --features {feature}`{linux}"
-        )));
+        let what = say!("this build of G7 has no devices of the kind \"{}\"", Said::foreign(word));
+        let mut problem = Problem::new(&codes::BAD_WIRING, device.name.at, what);
+        problem.help = Some(match word {
+            "gpio" => say!("build it with `cargo install --path crates/g7 --features {feature}`, for Linux"),
+            _ => say!("build it with `cargo install --path crates/g7 --features {feature}`"),
+        });
         Some(problem)
     };
     setup.devices.iter().filter_map(wrong).collect()

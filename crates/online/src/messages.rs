@@ -3,7 +3,7 @@
 //! Pure: `wiring` holds the channel against the chart and the device, and asks here for the rest.
 
 use g7_host::Kind;
-use g7_model::Span;
+use g7_model::{Said, Span, say};
 
 use crate::setup::{Broker, Channel, Point, publishable};
 use crate::value::{Holds, Scaling};
@@ -12,8 +12,8 @@ use crate::wire::{Topic, Wire};
 /// Why a channel is refused: the place, the reason, and what to do instead.
 pub(crate) struct Refused {
     pub(crate) at: Span,
-    pub(crate) what: String,
-    pub(crate) help: Option<String>,
+    pub(crate) what: Said,
+    pub(crate) help: Option<Said>,
 }
 
 /// The variable of a channel.
@@ -34,33 +34,33 @@ pub(crate) fn wire(
     carried: &Carried<'_>,
     broker: &Broker,
 ) -> Result<(Wire, Scaling), Refused> {
-    let refused = |at, what: String, help: Option<&str>| Refused { at, what, help: help.map(str::to_owned) };
+    let refused = |at, what: Said, help: Option<Said>| Refused { at, what, help };
     if carried.kind == Kind::Text {
-        let what = format!("a message cannot carry `{}`, which is a STRING", carried.name);
-        return Err(refused(channel.at, what, Some("a STRING cannot be wired")));
+        let what = say!("a message cannot carry `{}`, which is a STRING", carried.name);
+        return Err(refused(channel.at, what, Some(say!("a STRING cannot be wired"))));
     }
     if let Some(form) = &channel.encoding {
-        return Err(refused(form.at, "a message has no form of number".to_owned(), None));
+        return Err(refused(form.at, say!("a message has no form of number"), None));
     }
     let scaling = number(channel, carried)?;
     let wire = match (&channel.point, &broker.sparkplug) {
         (Point::Topic(name), None) => Wire::Topic(topic(channel, carried, broker, name)?),
         (Point::Metric(name), Some(_)) => {
             if let Some(at) = channel.message.first() {
-                let what = "a metric has no field, quality of service, retain, will or silence";
-                return Err(refused(at, what.to_owned(), None));
+                let what = say!("a metric has no field, quality of service, retain, will or silence");
+                return Err(refused(at, what, None));
             }
             let name = name.as_deref().unwrap_or(carried.name);
             if name == "bdSeq" || name.starts_with("Node Control/") {
-                return Err(refused(channel.at, format!("`{name}` belongs to Sparkplug itself"), None));
+                return Err(refused(channel.at, say!("`{name}` belongs to Sparkplug itself"), None));
             }
             Wire::Metric(name.to_owned())
         }
         (point, sparkplug) => {
-            let what = format!("`{point}` is no point of a broker");
+            let what = say!("`{point}` is no point of a broker");
             let help = match sparkplug {
-                Some(_) => "points of an edge node are metrics: `metric(Tank/Level)`",
-                None => "points of a broker are topics: `topic(plant/level)`",
+                Some(_) => say!("points of an edge node are metrics: `metric(Tank/Level)`"),
+                None => say!("points of a broker are topics: `topic(plant/level)`"),
             };
             return Err(refused(channel.at, what, Some(help)));
         }
@@ -75,12 +75,12 @@ fn topic(channel: &Channel, carried: &Carried<'_>, broker: &Broker, name: &str) 
     }
     let will = message.will.as_ref().filter(|will| will.value);
     if let (Some(will), false) = (will, carried.safe) {
-        let what = format!("`{}` is no output: it has no safe value for a will", carried.name);
+        let what = say!("`{}` is no output: it has no safe value for a will", carried.name);
         return Err(Refused { at: will.at, what, help: None });
     }
     if let (Some(will), Some(_)) = (will, &broker.status) {
-        let what = "a client of MQTT has one will, and `status` of the broker is it".to_owned();
-        return Err(Refused { at: will.at, what, help: Some("give up one of the two".to_owned()) });
+        let what = say!("a client of MQTT has one will, and `status` of the broker is it");
+        return Err(Refused { at: will.at, what, help: Some(say!("give up one of the two")) });
     }
     Ok(Topic {
         name: name.to_owned(),
@@ -96,7 +96,7 @@ fn topic(channel: &Channel, carried: &Carried<'_>, broker: &Broker, name: &str) 
 pub(crate) fn number(channel: &Channel, carried: &Carried<'_>) -> Result<Scaling, Refused> {
     let numbers = [&channel.scale, &channel.offset];
     if let (Kind::Bool, Some(number)) = (carried.kind, numbers.into_iter().flatten().next()) {
-        let what = "a BOOL has no scale or offset".to_owned();
+        let what = say!("a BOOL has no scale or offset");
         return Err(Refused { at: number.at, what, help: None });
     }
     let [scale, offset] = [(&channel.scale, 1.0), (&channel.offset, 0.0)]

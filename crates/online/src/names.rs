@@ -1,6 +1,6 @@
 //! Names of an io file, held against a chart.
 
-use g7_model::{Problem, codes};
+use g7_model::{Problem, Said, codes, say};
 use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
 use crate::setup::At;
@@ -18,15 +18,13 @@ pub(crate) fn named<'a>(bench: &'a Bench, name: &At<String>) -> Result<Named<'a>
     if let Some(step) = bench.steps.iter().find(|s| s.activity().eq_ignore_ascii_case(name)) {
         return Ok(Named::Step(step));
     }
-    let wrong =
-        |what: String| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, g7_model::Said::foreign(what)));
+    let wrong = |what: Said| Box::new(Problem::new(&codes::UNKNOWN_CHANNEL, *at, what));
     match bench.item(name) {
         Some(item) if item.role != Role::Plant => Ok(Named::Item(item)),
-        Some(_) => Err(wrong(format!("`{name}` belongs to the plant, not to the chart"))),
+        Some(_) => Err(wrong(say!("`{name}` belongs to the plant, not to the chart"))),
         None => {
-            let near = bench.suggestions(name).trim_start_matches("; ").to_owned();
-            let mut problem = wrong(format!("the chart has no variable or step `{name}`"));
-            problem.help = (Some(near).filter(|near| !near.is_empty())).map(g7_model::Said::foreign);
+            let mut problem = wrong(say!("the chart has no variable or step `{name}`"));
+            problem.help = Some(bench.near(name)).filter(|near| !near.is_empty());
             Err(problem)
         }
     }

@@ -5,6 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_host::Kind;
+use g7_model::{Said, say};
 use g7_rig::{Activity, Bench, Item, Role, StepItem};
 
 use crate::driver::Out;
@@ -25,7 +26,7 @@ pub(crate) fn wire(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Sc
     let node = read_node(text).map_err(|what| Refused {
         at: channel.at,
         what,
-        help: Some("write `node(ns=2;s=Tank.Level)`, or `node(nsu=urn:tanks;s=Level)`".to_owned()),
+        help: Some(say!("write `node(ns=2;s=Tank.Level)`, or `node(nsu=urn:tanks;s=Level)`")),
     })?;
     Ok((Wire::Node(node), scaling(channel, carried)?))
 }
@@ -35,7 +36,7 @@ pub(crate) fn shown(channel: &Channel, subject: &Subject, class: Class) -> Resul
     let Point::Node(name) = &channel.point else { return Err(no_node(channel, "node()")) };
     let name = name.as_deref().unwrap_or(&subject.name).to_owned();
     if name.len() > LONGEST || name.contains(char::is_control) {
-        let what = format!("the name of a node has at most {LONGEST} bytes, and no control characters");
+        let what = say!("the name of a node has at most {LONGEST} bytes, and no control characters");
         return Err(Refused { at: channel.at, what, help: None });
     }
     let unit = channel.unit.as_ref().map(|unit| unit.value.clone());
@@ -48,21 +49,21 @@ pub(crate) fn shown(channel: &Channel, subject: &Subject, class: Class) -> Resul
 const LONGEST: usize = 1024;
 
 fn no_node(channel: &Channel, example: &str) -> Refused {
-    let what = format!("`{}` is no point of OPC UA", channel.point);
-    Refused { at: channel.at, what, help: Some(format!("its points are nodes: `{example}`")) }
+    let what = say!("`{}` is no point of OPC UA", channel.point);
+    Refused { at: channel.at, what, help: Some(say!("its points are nodes: `{example}`")) }
 }
 
 /// A node has a type of its own; the form of the number says which one it is, where the variable does not.
 fn scaling(channel: &Channel, carried: &Carried<'_>) -> Result<Scaling, Refused> {
-    let refused = |at, what: &str| Refused { at, what: what.to_owned(), help: None };
+    let refused = |at, what: Said| Refused { at, what, help: None };
     if carried.kind == Kind::Text {
-        let what = format!("`{}` is a STRING, which cannot be wired", carried.name);
-        return Err(refused(channel.at, &what));
+        let what = say!("`{}` is a STRING, which cannot be wired", carried.name);
+        return Err(refused(channel.at, what));
     }
     let scaling = number(channel, carried)?;
     let Some(form) = &channel.encoding else { return Ok(scaling) };
     if carried.kind == Kind::Bool {
-        return Err(refused(form.at, "a BOOL has no form of number"));
+        return Err(refused(form.at, say!("a BOOL has no form of number")));
     }
     Ok(Scaling { holds: holds(form.value), ..scaling })
 }

@@ -3,7 +3,7 @@
 //! Pure: `wiring` holds the channel against the chart and the device, and asks here for the rest.
 
 use g7_host::Kind;
-use g7_model::Span;
+use g7_model::{Said, Span, say};
 
 use crate::forms;
 use crate::messages::{Carried, Refused};
@@ -11,16 +11,17 @@ use crate::setup::{Address, Channel, Encoding, Kind as Way, Memory, Point, Width
 use crate::value::{Holds, Scaling};
 use crate::wire::{Cell, Form, Line, Wire};
 
-fn refused(at: Span, what: impl Into<String>, help: &str) -> Refused {
-    Refused { at, what: what.into(), help: Some(help.to_owned()).filter(|help| !help.is_empty()) }
+fn refused(at: Span, what: Said, help: Option<Said>) -> Refused {
+    Refused { at, what, help }
 }
 
 /// A setting of a channel that the points of a kind of device do not have: its place, and who has it.
-pub(crate) fn misplaced(channel: &Channel, kind: Option<&Way>) -> Option<(Span, &'static str)> {
-    let message = channel.message.first().map(|at| (at, "only a topic has messages"));
+pub(crate) fn misplaced(channel: &Channel, kind: Option<&Way>) -> Option<(Span, Said)> {
+    let message = channel.message.first().map(|at| (at, say!("only a topic has messages")));
     let pin = channel.pin.first();
-    let pin = pin.map(|at| (at, "only a line of a chip has a bias, a level and a debounce time"));
-    let unit = channel.unit.as_ref().map(|unit| (unit.at, "only an OPC UA server of our own shows a unit"));
+    let pin = pin.map(|at| (at, say!("only a line of a chip has a bias, a level and a debounce time")));
+    let unit =
+        channel.unit.as_ref().map(|unit| (unit.at, say!("only an OPC UA server of our own shows a unit")));
     match kind {
         Some(Way::Gpio(_)) => message.or(unit),
         Some(Way::Mqtt(_)) => pin.or(unit),
@@ -33,18 +34,26 @@ pub(crate) fn misplaced(channel: &Channel, kind: Option<&Way>) -> Option<(Span, 
 pub(crate) fn cell(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Scaling), Refused> {
     let at = channel.at;
     let Point::S7(address) = &channel.point else {
-        let what = format!("`{}` is no address of a controller of Siemens", channel.point);
-        return Err(refused(at, what, "write `DB1.DBX0.0`, `DB1.DBW2`, `M0.0`, `MW2`, `I0.0` or `Q0.0`"));
+        let what = say!("`{}` is no address of a controller of Siemens", channel.point);
+        return Err(refused(
+            at,
+            what,
+            Some(say!("write `DB1.DBX0.0`, `DB1.DBW2`, `M0.0`, `MW2`, `I0.0` or `Q0.0`")),
+        ));
     };
     if carried.safe && address.memory == Memory::Input {
-        return Err(refused(at, format!("`{address}` cannot be written"), "outputs are in DB, M or Q"));
+        return Err(refused(
+            at,
+            say!("`{address}` cannot be written"),
+            Some(say!("outputs are in DB, M or Q")),
+        ));
     }
     let form = form(channel, carried, address)?;
     let numbers = [&channel.scale, &channel.offset];
     let holds = match form {
         Form::Bit(_) => {
             if let Some(number) = numbers.into_iter().flatten().next() {
-                return Err(refused(number.at, "one bit has no scale or offset", ""));
+                return Err(refused(number.at, say!("one bit has no scale or offset"), None));
             }
             Holds::Bit
         }
@@ -56,27 +65,27 @@ pub(crate) fn cell(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Sc
     let inverted = carried.inverted && holds == Holds::Bit;
     let cell = Cell { memory: address.memory, byte: address.byte, form };
     if cell.end() > 65_536 {
-        return Err(refused(at, "the number goes beyond the last byte, 65535", ""));
+        return Err(refused(at, say!("the number goes beyond the last byte, 65535"), None));
     }
     Ok((Wire::S7(cell), Scaling { kind: carried.kind, holds, inverted, scale, offset }))
 }
 
 /// How the bytes of an address hold the variable.
 fn form(channel: &Channel, carried: &Carried<'_>, address: &Address) -> Result<Form, Refused> {
-    let wrong = |what: String, help: &str| Err(refused(channel.at, what, help));
-    let none = format!("`{address}` cannot carry `{}`", carried.name);
+    let wrong = |what: Said, help: Said| Err(refused(channel.at, what, Some(help)));
+    let none = say!("`{address}` cannot carry `{}`", carried.name);
     let width: u16 = match (address.width, carried.kind) {
-        (_, Kind::Text) => return wrong(none, "a STRING cannot be wired"),
+        (_, Kind::Text) => return wrong(none, say!("a STRING cannot be wired")),
         (Width::Bit(bit), Kind::Bool) => {
             return match &channel.encoding {
                 None => Ok(Form::Bit(bit)),
-                Some(form) => Err(refused(form.at, "one bit has no form of number", "")),
+                Some(form) => Err(refused(form.at, say!("one bit has no form of number"), None)),
             };
         }
         (Width::Bit(_), _) | (_, Kind::Bool) => {
             return wrong(
-                format!("{none}: a BOOL is a bit, a number is not"),
-                "a bit is `M0.0` or `DB1.DBX0.0`; a number is `MB0`, `MW0`, `MD0`",
+                say!("{none}: a BOOL is a bit, a number is not"),
+                say!("a bit is `M0.0` or `DB1.DBX0.0`; a number is `MB0`, `MW0`, `MD0`"),
             );
         }
         (Width::Byte, _) => 1,
@@ -100,8 +109,10 @@ fn form(channel: &Channel, carried: &Carried<'_>, address: &Address) -> Result<F
         (8, 1) => Ok(Form::Number(given.value)),
         _ => Err(refused(
             given.at,
-            format!("this form of number has not the size of `{address}`"),
-            "W has `u16` and `i16`, D has `u32`, `i32` and `f32`; `u64`, `i64` and `f64` begin at a byte: `DBB`",
+            say!("this form of number has not the size of `{address}`"),
+            Some(say!(
+                "W has `u16` and `i16`, D has `u32`, `i32` and `f32`; `u64`, `i64` and `f64` begin at a byte: `DBB`"
+            )),
         )),
     }
 }
@@ -109,16 +120,16 @@ fn form(channel: &Channel, carried: &Carried<'_>, address: &Address) -> Result<F
 /// The line of a channel at a chip, and how its value becomes a word.
 pub(crate) fn line(channel: &Channel, carried: &Carried<'_>) -> Result<(Wire, Scaling), Refused> {
     let Point::Line(offset) = &channel.point else {
-        let what = format!("`{}` is no line of a chip", channel.point);
-        return Err(refused(channel.at, what, "write `line(17)`"));
+        let what = say!("`{}` is no line of a chip", channel.point);
+        return Err(refused(channel.at, what, Some(say!("write `line(17)`"))));
     };
     if carried.kind != Kind::Bool {
-        let what = format!("a line is one bit and cannot carry `{}`", carried.name);
-        return Err(refused(channel.at, what, "wire a BOOL to it"));
+        let what = say!("a line is one bit and cannot carry `{}`", carried.name);
+        return Err(refused(channel.at, what, Some(say!("wire a BOOL to it"))));
     }
     let numbers = [&channel.scale, &channel.offset].into_iter().flatten().map(|n| n.at);
     if let Some(at) = numbers.chain(channel.encoding.as_ref().map(|e| e.at)).next() {
-        return Err(refused(at, "one bit has no scale, offset or form of number", ""));
+        return Err(refused(at, say!("one bit has no scale, offset or form of number"), None));
     }
     let pin = &channel.pin;
     let line = Line {

@@ -5,6 +5,7 @@
 
 use std::sync::Arc;
 
+use g7_model::{Said, say};
 use rustls::crypto::ring;
 use rustls::pki_types::pem::{self, PemObject as _};
 use rustls::pki_types::{CertificateDer, PrivateKeyDer};
@@ -35,14 +36,14 @@ pub(crate) struct Files<'a> {
 /// # Errors
 ///
 /// The file that cannot be used, and why.
-pub(crate) fn config(files: Files<'_>) -> Result<Arc<ClientConfig>, (Part, String)> {
+pub(crate) fn config(files: Files<'_>) -> Result<Arc<ClientConfig>, (Part, Said)> {
     let roots = match files.roots {
         Some(pem) => given(pem).map_err(|why| (Part::Roots, why))?,
         None => of_the_system().map_err(|why| (Part::Roots, why))?,
     };
     let builder = ClientConfig::builder_with_provider(Arc::new(ring::default_provider()))
         .with_safe_default_protocol_versions()
-        .map_err(|e| (Part::Roots, e.to_string()))?
+        .map_err(|e| (Part::Roots, Said::foreign(e.to_string())))?
         .with_root_certificates(roots);
     let Some((certificate, key)) = files.identity else {
         return Ok(Arc::new(builder.with_no_client_auth()));
@@ -50,45 +51,45 @@ pub(crate) fn config(files: Files<'_>) -> Result<Arc<ClientConfig>, (Part, Strin
     let chain = certificates(certificate).map_err(|why| (Part::Certificate, why))?;
     let key = PrivateKeyDer::from_pem_slice(key).map_err(|e| (Part::Key, no_key(&e)))?;
     let config = builder.with_client_auth_cert(chain, key).map_err(|e| match e {
-        rustls::Error::InconsistentKeys(_) => {
-            (Part::Key, "it is not the key of this `certificate`".to_owned())
-        }
-        other => (Part::Certificate, other.to_string()),
+        rustls::Error::InconsistentKeys(_) => (Part::Key, say!("it is not the key of this `certificate`")),
+        other => (Part::Certificate, Said::foreign(other.to_string())),
     })?;
     Ok(Arc::new(config))
 }
 
-fn certificates(text: &[u8]) -> Result<Vec<CertificateDer<'static>>, String> {
+fn certificates(text: &[u8]) -> Result<Vec<CertificateDer<'static>>, Said> {
     let found: Result<Vec<CertificateDer<'static>>, pem::Error> =
         CertificateDer::pem_slice_iter(text).collect();
     match found {
-        Ok(found) if found.is_empty() => Err("it has no certificate in the form PEM".to_owned()),
+        Ok(found) if found.is_empty() => Err(say!("it has no certificate in the form PEM")),
         Ok(found) => Ok(found),
-        Err(e) => Err(format!("it is no certificate in the form PEM: {e}")),
+        Err(e) => Err(say!("it is no certificate in the form PEM: {}", Said::foreign(e.to_string()))),
     }
 }
 
-fn no_key(error: &pem::Error) -> String {
+fn no_key(error: &pem::Error) -> Said {
     match error {
-        pem::Error::NoItemsFound => "it has no private key in the form PEM".to_owned(),
-        other => format!("it is no private key in the form PEM: {other}"),
+        pem::Error::NoItemsFound => say!("it has no private key in the form PEM"),
+        other => say!("it is no private key in the form PEM: {}", Said::foreign(other.to_string())),
     }
 }
 
-fn given(text: &[u8]) -> Result<RootCertStore, String> {
+fn given(text: &[u8]) -> Result<RootCertStore, Said> {
     let mut roots = RootCertStore::empty();
     for certificate in certificates(text)? {
-        roots.add(certificate).map_err(|e| format!("a certificate in it cannot be used: {e}"))?;
+        let why =
+            |e: rustls::Error| say!("a certificate in it cannot be used: {}", Said::foreign(e.to_string()));
+        roots.add(certificate).map_err(why)?;
     }
     Ok(roots)
 }
 
-fn of_the_system() -> Result<RootCertStore, String> {
+fn of_the_system() -> Result<RootCertStore, Said> {
     let mut roots = RootCertStore::empty();
     // Systems have roots that are too old to be understood; the others count.
     roots.add_parsable_certificates(rustls_native_certs::load_native_certs().certs);
     if roots.is_empty() {
-        return Err("this system has no certificates that it trusts: name a file by `ca`".to_owned());
+        return Err(say!("this system has no certificates that it trusts: name a file by `ca`"));
     }
     Ok(roots)
 }

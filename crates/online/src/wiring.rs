@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use g7_engine::Addr;
 use g7_host::Kind;
-use g7_model::{Nanos, Problem, Span, codes};
+use g7_model::{Nanos, Problem, Said, Span, codes, say};
 use g7_rig::{Bench, Item, Role};
 
 use crate::chosen;
@@ -16,7 +16,7 @@ use crate::names::{Named, named, source_of};
 use crate::nodes;
 use crate::points;
 use crate::setup::{
-    Area, At, Bad, Broker, Channel, Encoding, Handle, Kind as Way, Literal, Place, Point, Register, Setup,
+    At, Bad, Broker, Channel, Encoding, Handle, Kind as Way, Literal, Place, Point, Register, Setup,
 };
 use crate::subject::{Class, Subject};
 use crate::value::{Holds, Raw, Scaling};
@@ -75,8 +75,8 @@ struct Wirer<'a> {
 }
 
 impl<'a> Wirer<'a> {
-    fn wrong(&mut self, code: &'static codes::Code, at: Span, what: impl Into<String>) -> &mut Problem {
-        self.problems.push(Problem::new(code, at, g7_model::Said::foreign(what)));
+    fn wrong(&mut self, code: &'static codes::Code, at: Span, what: Said) -> &mut Problem {
+        self.problems.push(Problem::new(code, at, what));
         let last = self.problems.len() - 1;
         &mut self.problems[last]
     }
@@ -84,24 +84,28 @@ impl<'a> Wirer<'a> {
     /// The input or output that a channel names.
     fn item(&mut self, channel: &Channel, input: bool, wired: &mut BTreeMap<u32, Span>) -> Option<&'a Item> {
         let At { value: name, at } = &channel.variable;
-        let class = if input { "input" } else { "output" };
         let Some(item) = self.bench.item(name) else {
-            let near = self.bench.suggestions(name);
-            let near = near.trim_start_matches("; ").to_owned();
-            let problem =
-                self.wrong(&codes::UNKNOWN_CHANNEL, *at, format!("the chart has no {class} `{name}`"));
-            problem.help = (Some(near).filter(|near| !near.is_empty())).map(g7_model::Said::foreign);
+            let what = match input {
+                true => say!("the chart has no input `{name}`"),
+                false => say!("the chart has no output `{name}`"),
+            };
+            let near = self.bench.near(name);
+            self.wrong(&codes::UNKNOWN_CHANNEL, *at, what).help = Some(near).filter(|near| !near.is_empty());
             return None;
         };
         if matches!(item.role, Role::Input(_)) != input || !matches!(item.role, Role::Input(_) | Role::Output)
         {
-            self.wrong(&codes::UNKNOWN_CHANNEL, *at, format!("`{name}` is no {class} of the chart"));
+            let what = match input {
+                true => say!("`{name}` is no input of the chart"),
+                false => say!("`{name}` is no output of the chart"),
+            };
+            self.wrong(&codes::UNKNOWN_CHANNEL, *at, what);
             return None;
         }
         if let Some(before) = wired.insert(item.addr, *at) {
-            self.wrong(&codes::WIRED_TWICE, *at, format!("`{}` is wired twice", item.name))
+            self.wrong(&codes::WIRED_TWICE, *at, say!("`{}` is wired twice", item.name))
                 .related
-                .push((before, g7_model::Said::foreign("it is wired here as well".to_owned())));
+                .push((before, say!("it is wired here as well")));
             return None;
         }
         Some(item)
@@ -150,12 +154,12 @@ impl<'a> Wirer<'a> {
             let names: Vec<String> =
                 self.wiring.devices.iter().map(|d| format!("`{}`", d.device.name.value)).collect();
             let help = if names.is_empty() {
-                format!("declare it: `[devices.{}]`", channel.device.value)
+                say!("declare it: `[devices.{}]`", channel.device.value)
             } else {
-                format!("there are {}", names.join(", "))
+                say!("there are {}", Said::foreign(names.join(", ")))
             };
-            let what = format!("there is no device `{}`", channel.device.value);
-            self.wrong(&codes::UNKNOWN_CHANNEL, channel.at, what).help = Some(g7_model::Said::foreign(help));
+            let what = say!("there is no device `{}`", channel.device.value);
+            self.wrong(&codes::UNKNOWN_CHANNEL, channel.at, what).help = Some(help);
             return;
         };
         let kind = self.wiring.devices.get(device).map(|d| d.device.kind.clone());
@@ -167,7 +171,7 @@ impl<'a> Wirer<'a> {
             (_, Some(Way::Panel(_))) => self.panel(channel, subject, device, class),
             (_, _) if channel.limits.first().is_some() => {
                 let at = channel.limits.first().unwrap_or(channel.at);
-                self.wrong(&codes::WRONG_CHANNEL, at, "only a number of a panel has limits");
+                self.wrong(&codes::WRONG_CHANNEL, at, say!("only a number of a panel has limits"));
             }
             (Point::Good, _) => self.good(channel, subject, device, class),
             (_, Some(Way::Mqtt(broker))) => self.message(channel, subject, (device, &broker), class),
@@ -180,16 +184,15 @@ impl<'a> Wirer<'a> {
             }
             (Point::Modbus(register), _) => self.register(channel, subject, device, *register, class),
             (point, _) => {
-                let what = format!("`{point}` is no point of `{}`", channel.device.value);
+                let what = say!("`{point}` is no point of `{}`", channel.device.value);
                 let help = match point {
-                    Point::S7(_) => "only a controller of Siemens has such addresses: `kind = \"s7\"`",
-                    Point::Line(_) => "only a chip has lines: `kind = \"gpio\"`",
-                    Point::Panel(_) => "only a panel has buttons and lamps: `kind = \"panel\"`",
-                    Point::Node(_) => "only OPC UA has nodes: `kind = \"opc-ua\"`",
-                    _ => "only a broker has messages: `kind = \"mqtt\"`",
+                    Point::S7(_) => say!("only a controller of Siemens has such addresses: `kind = \"s7\"`"),
+                    Point::Line(_) => say!("only a chip has lines: `kind = \"gpio\"`"),
+                    Point::Panel(_) => say!("only a panel has buttons and lamps: `kind = \"panel\"`"),
+                    Point::Node(_) => say!("only OPC UA has nodes: `kind = \"opc-ua\"`"),
+                    _ => say!("only a broker has messages: `kind = \"mqtt\"`"),
                 };
-                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                    Some(g7_model::Said::foreign(help.to_owned()));
+                self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             }
         }
     }
@@ -203,7 +206,7 @@ impl<'a> Wirer<'a> {
                 }
             }
             _ => {
-                let what = format!("`good()` is a BOOL that is read, and `{}` is none", subject.name);
+                let what = say!("`good()` is a BOOL that is read, and `{}` is none", subject.name);
                 self.wrong(&codes::WRONG_CHANNEL, channel.at, what);
             }
         }
@@ -212,10 +215,8 @@ impl<'a> Wirer<'a> {
     /// An address of a controller of Siemens, a line of a chip, or a node of a server of OPC UA.
     fn point(&mut self, channel: &Channel, subject: &Subject, device: usize, class: Class, read: Read) {
         if class == Class::Shown {
-            let (what, help) = NOT_SHOWN;
-            let what = format!("`{}` {what}", channel.point);
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                Some(g7_model::Said::foreign(help.to_owned()));
+            let (what, help) = not_shown(&channel.point);
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return;
         }
         self.place(channel, subject, device, class, read(channel, &subject.carried(class)));
@@ -233,7 +234,7 @@ impl<'a> Wirer<'a> {
         let (wire, scaling) = match read {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
-                self.wrong(&codes::WRONG_CHANNEL, at, what).help = (help).map(g7_model::Said::foreign);
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
                 return;
             }
         };
@@ -259,21 +260,16 @@ impl<'a> Wirer<'a> {
             Some(_) | None => Nanos::ZERO,
         };
         if channel.point == Point::Panel(Handle::Button) && press < self.bench.period {
-            let what = format!(
-                "a press of {} may fall between two scans, one each {}",
-                press.plain(),
-                self.bench.period.plain()
-            );
-            let help =
-                format!("give the panel a longer `press`: `press = \"{}\"`", self.bench.period.plain());
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(g7_model::Said::foreign(help));
+            let period = self.bench.period.plain();
+            let [press, each] = [press.plain(), period.clone()].map(Said::foreign);
+            let what = say!("a press of {press} may fall between two scans, one each {each}");
+            let help = say!("give the panel a longer `press`: `press = \"{period}\"`");
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return;
         }
         match handles::wire(channel, (&subject.name, subject.kind), class == Class::Input) {
             Ok(wired) => self.connect(channel, subject, device, wired, class),
-            Err(Refused { at, what, help }) => {
-                self.wrong(&codes::WRONG_CHANNEL, at, what).help = (help).map(g7_model::Said::foreign)
-            }
+            Err(Refused { at, what, help }) => self.wrong(&codes::WRONG_CHANNEL, at, what).help = help,
         }
     }
 
@@ -288,7 +284,7 @@ impl<'a> Wirer<'a> {
         let (wire, scaling) = match messages::wire(channel, &subject.carried(class), broker) {
             Ok(wired) => wired,
             Err(Refused { at, what, help }) => {
-                self.wrong(&codes::WRONG_CHANNEL, at, what).help = (help).map(g7_model::Said::foreign);
+                self.wrong(&codes::WRONG_CHANNEL, at, what).help = help;
                 return;
             }
         };
@@ -321,12 +317,12 @@ impl<'a> Wirer<'a> {
         let key = (if place == WILL { device } else { first }, place);
         if let Some((other, there)) = self.messages.get(&key).cloned() {
             let what = match key.1.as_str() {
-                WILL => format!("`{}` and `{other}` are both the will of one client", item.name),
-                place => format!("`{}` and `{other}` are wired to one point, {place}", item.name),
+                WILL => say!("`{}` and `{other}` are both the will of one client", item.name),
+                place => one_point(&item.name, &other, place),
             };
             self.wrong(&codes::WIRED_TWICE, channel.at, what)
                 .related
-                .push((there, g7_model::Said::foreign(format!("`{other}` is wired here"))));
+                .push((there, say!("`{other}` is wired here")));
             return false;
         }
         self.messages.insert(key, (item.name.clone(), channel.at));
@@ -342,9 +338,8 @@ impl<'a> Wirer<'a> {
         class: Class,
     ) {
         let server = self.wiring.devices.get(device).is_some_and(|d| d.device.kind.is_server());
-        if let Some((what, help)) = refused(register.area, class, server) {
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, format!("`{register}` {what}")).help =
-                Some(g7_model::Said::foreign(help.to_owned()));
+        if let Some((what, help)) = refused(register, class, server) {
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return;
         }
         let Some((encoding, scaling)) = self.scaling(channel, subject, register) else { return };
@@ -394,14 +389,16 @@ impl<'a> Wirer<'a> {
             Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => !bit,
         };
         if !fits {
-            let what = format!("`{register}` cannot carry `{}`, which is {}", item.name, item.ty);
+            let what =
+                say!("`{register}` cannot carry `{}`, which is {}", item.name, Said::foreign(&item.ty));
             let help = match item.kind {
-                Kind::Bool => "a BOOL is a coil, a discrete input, or one bit of a register: `holding(4.0)`",
-                Kind::Text => "a STRING cannot be wired",
-                _ => "a number is in registers: `input(…)` or `holding(…)`",
+                Kind::Bool => {
+                    say!("a BOOL is a coil, a discrete input, or one bit of a register: `holding(4.0)`")
+                }
+                Kind::Text => say!("a STRING cannot be wired"),
+                _ => say!("a number is in registers: `input(…)` or `holding(…)`"),
             };
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help =
-                Some(g7_model::Said::foreign(help.to_owned()));
+            self.wrong(&codes::WRONG_CHANNEL, channel.at, what).help = Some(help);
             return None;
         }
         let inverted = item.inverted;
@@ -409,7 +406,7 @@ impl<'a> Wirer<'a> {
         if bit {
             let first = numbers.chain(channel.encoding.as_ref().map(|e| e.at)).next();
             if let Some(at) = first {
-                self.wrong(&codes::WRONG_CHANNEL, at, "one bit has no scale, offset or form of number");
+                self.wrong(&codes::WRONG_CHANNEL, at, say!("one bit has no scale, offset or form of number"));
                 return None;
             }
             let scaling = Scaling { kind: item.kind, holds: Holds::Bit, inverted, scale: 1.0, offset: 0.0 };
@@ -417,7 +414,11 @@ impl<'a> Wirer<'a> {
         }
         let encoding = channel.encoding.as_ref().map_or_else(|| forms::usual(item.kind), |e| e.value);
         if u32::from(register.address) + u32::from(encoding.registers()) > 65_536 {
-            self.wrong(&codes::WRONG_CHANNEL, channel.at, "the number goes beyond the last register, 65535");
+            self.wrong(
+                &codes::WRONG_CHANNEL,
+                channel.at,
+                say!("the number goes beyond the last register, 65535"),
+            );
             return None;
         }
         let holds = forms::holds(encoding);
@@ -450,10 +451,10 @@ impl<'a> Wirer<'a> {
             whole.into_iter().chain(all).find_map(|r| self.places.get(&(device, r)).cloned())
         });
         if let Some((other, there)) = taken {
-            let what = format!("`{}` and `{other}` are wired to one point, {register}", item.name);
+            let what = one_point(&item.name, &other, &register.to_string());
             self.wrong(&codes::WIRED_TWICE, channel.at, what)
                 .related
-                .push((there, g7_model::Said::foreign(format!("`{other}` is wired here"))));
+                .push((there, say!("`{other}` is wired here")));
             return false;
         }
         for place in places {
@@ -477,7 +478,7 @@ impl<'a> Wirer<'a> {
             Literal::Number(_) => None,
         };
         if word.is_none() {
-            let what = format!("`{}` cannot have this value", channel.variable.value);
+            let what = say!("`{}` cannot have this value", channel.variable.value);
             self.wrong(&codes::WRONG_CHANNEL, channel.bad.at, what);
         }
         word.map(WhileBad::Word)
@@ -490,21 +491,30 @@ type Read = fn(&Channel, &Carried<'_>) -> Result<(Wire, Scaling), Refused>;
 /// The key of the will among the points of a broker; no topic and no metric is empty.
 const WILL: &str = "";
 
+/// Why two have one point.
+fn one_point(one: &str, other: &str, place: &str) -> Said {
+    say!("`{one}` and `{other}` are wired to one point, {}", Said::foreign(place))
+}
+
 /// Why a device shows nothing, and what to do instead.
-const NOT_SHOWN: (&str, &str) = (
-    "belongs to a device that does not ask",
-    "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"opc-ua-server\"`, `kind = \"mqtt\"`",
-);
+fn not_shown(point: &impl std::fmt::Display) -> (Said, Said) {
+    let help = say!(
+        "only a server or a broker shows: `kind = \"modbus-server\"`, `kind = \"opc-ua-server\"`, `kind = \"mqtt\"`"
+    );
+    (say!("`{point}` belongs to a device that does not ask"), help)
+}
 
 /// Why a use of a table is refused, and what to do instead.
-fn refused(area: Area, class: Class, server: bool) -> Option<(&'static str, &'static str)> {
+fn refused(register: Register, class: Class, server: bool) -> Option<(Said, Said)> {
+    let is_writable = register.area.is_writable();
     match class {
-        Class::Shown if !server => Some(NOT_SHOWN),
-        Class::Input if server && !area.is_writable() => {
-            Some(("cannot be written by a master", "inputs from a master are coils or holding registers"))
-        }
-        Class::Output if !server && !area.is_writable() => {
-            Some(("cannot be written", "outputs are coils or holding registers"))
+        Class::Shown if !server => Some(not_shown(&register)),
+        Class::Input if server && !is_writable => Some((
+            say!("`{register}` cannot be written by a master"),
+            say!("inputs from a master are coils or holding registers"),
+        )),
+        Class::Output if !server && !is_writable => {
+            Some((say!("`{register}` cannot be written"), say!("outputs are coils or holding registers")))
         }
         Class::Input | Class::Output | Class::Shown => None,
     }

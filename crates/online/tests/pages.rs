@@ -377,7 +377,9 @@ fn a_password_comes_from_elsewhere_and_is_never_shown() {
     assert!(problems.is_empty(), "{problems:?}");
     let problems = setup::read_secrets(&mut setup, |origin| match origin {
         setup::Origin::File(name) if name == "there" => Ok(b"sesame\n".to_vec()),
-        setup::Origin::File(_) | setup::Origin::Variable(_) => Err("it is not there".to_owned()),
+        setup::Origin::File(_) | setup::Origin::Variable(_) => {
+            Err(g7_model::Said::foreign("it is not there"))
+        }
     });
     let [problem] = &problems[..] else { panic!("{problems:?}") };
     assert_eq!(

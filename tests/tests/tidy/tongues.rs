@@ -30,7 +30,11 @@ fn literal(code: &str) -> Option<String> {
 
 /// The texts of `say!` in a source without its tests and comments.
 fn said_in(source: &str) -> Vec<String> {
-    let own = source.split("#[cfg(test)]\nmod ").next().unwrap_or("");
+    // Tests of another file are only named here, and what follows them is the source's own.
+    let of_tests = |rest: &str| rest.lines().next().is_some_and(|line| line.ends_with('{'));
+    let begins =
+        source.match_indices("#[cfg(test)]\nmod ").find(|(at, sign)| of_tests(&source[at + sign.len()..]));
+    let own = begins.map_or(source, |(at, _)| &source[..at]);
     let code: String =
         own.lines().filter(|l| !l.trim_start().starts_with("//")).map(|l| l.to_owned() + "\n").collect();
     code.match_indices("say!(")
@@ -119,6 +123,7 @@ fn each_row_is_used_once_and_is_whole() {
 fn texts_are_found_and_taken_apart() {
     let source = "// say!(\"no\")\n let a = say!(\n    \"`{x}` has \\\n     {}\", 1); bsay!(\"no\");\n#[cfg(test)]\nmod t { say!(\"no\") }";
     assert_eq!(said_in(source), ["`{x}` has {}"]);
+    assert_eq!(said_in("#[cfg(test)]\nmod tests;\nsay!(\"a\")\n#[cfg(test)]\nmod t { say!(\"b\") }"), ["a"]);
     assert_eq!(taken_apart("`{x}` {} {n:?} {{").0, ["x", "", "n"]);
     assert!(!taken_apart("`word` {}").1 && taken_apart("a `b`").1);
 }

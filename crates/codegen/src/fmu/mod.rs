@@ -19,7 +19,7 @@ mod variables;
 mod version;
 
 use g7_compile::Compiled;
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Span, codes, say};
 
 use crate::{File, Language, Options, Room, Style, names};
 use variables::{Kind, Variable};
@@ -84,11 +84,11 @@ pub fn fmu(compiled: &Compiled, version: Version, name: &str, source: &str) -> R
 fn inexact(all: &[Variable], version: Version) -> Vec<Problem> {
     let long = |v: &&Variable| version == Version::V2 && matches!(v.kind, Kind::I64 | Kind::U64);
     let said = |v: &Variable| {
-        let text = format!(
+        let text = say!(
             "FMI 2.0 has no whole numbers of 64 bits: `{}` is a Real there, exact up to 2^53; FMI 3.0 has them",
             v.name
         );
-        Problem::new(&codes::DIFFERENT, v.at, g7_model::Said::foreign(text))
+        Problem::new(&codes::DIFFERENT, v.at, text)
     };
     all.iter().filter(long).filter(|v| v.at != Span::default()).map(said).collect()
 }

@@ -4,7 +4,7 @@
 
 use std::collections::HashSet;
 
-use g7_model::{Problem, Span, StandardFunction, codes};
+use g7_model::{Problem, Said, Span, StandardFunction, codes, say};
 
 use super::form::{self, Declared, Ex, St};
 use super::st::{FAULT_COMES, expression};
@@ -63,10 +63,14 @@ pub(crate) struct Ladder {
     pub(crate) rungs: Vec<Rung>,
 }
 
-/// A construct without a form in Ladder, and the way out.
-const SEARCH: &str = "a search for stability, which is a loop,";
-const ONE_PASS: &str = "`--profile iec61131` prints the chart with one pass in a scan; \
-    `g7 compare --profiles iec60848,iec61131` tells whether its outputs stay the same";
+/// The search for stability, which has no form in Ladder, and the way out.
+fn search() -> (Said, Option<Said>) {
+    let one_pass = say!(
+        "`--profile iec61131` prints the chart with one pass in a scan; \
+         `g7 compare --profiles iec60848,iec61131` tells whether its outputs stay the same"
+    );
+    (say!("a search for stability, which is a loop, cannot be printed as Ladder"), Some(one_pass))
+}
 
 /// Equations as rungs. If `plain`, no branch has branches: what stands there gets a rung and a memory of its own,
 /// because the generator of Beremiz cannot sort such ways.
@@ -96,13 +100,10 @@ pub(crate) fn ladder(e: &form::Block, place: Span, plain: bool) -> Result<Ladder
         }
     }
     match l.refused {
-        Some(what) => {
-            let problem = Problem::new(
-                &codes::NOT_CARRIED,
-                place,
-                g7_model::Said::foreign(format!("{what} cannot be printed as Ladder")),
-            );
-            Err(vec![if what == SEARCH { problem.help(g7_model::Said::foreign(ONE_PASS)) } else { problem }])
+        Some((what, help)) => {
+            let mut problem = Problem::new(&codes::NOT_CARRIED, place, what);
+            problem.help = help;
+            Err(vec![problem])
         }
         None => Ok(Ladder { variables: l.variables.into_list(), rungs: l.rungs }),
     }
@@ -123,7 +124,8 @@ struct Maker {
     behind: Option<String>,
     /// No branch has branches.
     plain: bool,
-    refused: Option<&'static str>,
+    /// A construct without a form in Ladder, and the way out.
+    refused: Option<(Said, Option<Said>)>,
 }
 
 impl Maker {
@@ -210,9 +212,11 @@ impl Maker {
                     self.block(&when, block);
                 }
                 St::Until(..) => {
-                    self.refused = Some(SEARCH);
+                    self.refused = Some(search());
                 }
-                St::Loop(_) | St::Exit => self.refused = Some("a loop"),
+                St::Loop(_) | St::Exit => {
+                    self.refused = Some((say!("a loop cannot be printed as Ladder"), None))
+                }
             }
         }
     }

@@ -10,7 +10,7 @@ use std::collections::HashSet;
 use g7_compile::Compiled;
 use g7_engine::Block as Kind;
 use g7_equations::{About, Equations, Expr, MemoryId, Section, Stmt, What};
-use g7_model::{Nanos, Problem, Span, Type, codes};
+use g7_model::{Nanos, Problem, Said, Span, Type, codes, say};
 
 use super::dialect::Dialect;
 use super::form::{Block, Ex, St, narrow};
@@ -55,9 +55,10 @@ pub(super) fn block(
     let options = g7_equations::Options { receptivities: dialect.set_reset, ..Default::default() };
     let mut e = g7_equations::equations(c, options);
     let overflow = spare::overflow(&e).map(|at| {
-        let text =
-            "arithmetic that overflows is a fault of a run here; a controller goes on as its maker decided";
-        Problem::new(&codes::DIFFERENT, at, g7_model::Said::foreign(text))
+        let text = say!(
+            "arithmetic that overflows is a fault of a run here; a controller goes on as its maker decided"
+        );
+        Problem::new(&codes::DIFFERENT, at, text)
     });
     let signals = signals(c, &e);
     let inside = native::native(&mut e, dialect.own_blocks);
@@ -103,10 +104,10 @@ fn first_of_calls(e: &Equations) -> HashSet<MemoryId> {
 }
 
 impl Scan<'_> {
-    pub(super) fn cannot(&mut self, what: &str) {
-        let text = format!("{what} cannot be printed as equations for a PLC");
+    pub(super) fn cannot(&mut self, what: Said) {
+        let text = say!("{what} cannot be printed as equations for a PLC");
         if self.problems.iter().all(|p| *p.what != *text) {
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, g7_model::Said::foreign(text)));
+            self.problems.push(Problem::new(&codes::NOT_CARRIED, self.at, text));
         }
     }
 
@@ -257,12 +258,12 @@ impl Scan<'_> {
             _ => {}
         }
         if matches!(memory.ty, Type::String(_)) {
-            return self.cannot("a text");
+            return self.cannot(say!("a text"));
         }
         if let (Some(n), Expr::Read(from)) = (self.elements(m), e) {
             let from = self.memories.name(*from).to_owned();
             if n > LONG {
-                self.cannot("a table of more than 256 elements that actions change at one moment");
+                self.cannot(say!("a table of more than 256 elements that actions change at one moment"));
             }
             let at = |name: &str, i: u32| Ex::Index(name.to_owned(), Box::new(Ex::Int(i.into())));
             out.extend((0..n.min(LONG)).map(|i| St::Assign(at(&name, i), at(&from, i))));
@@ -305,7 +306,7 @@ impl Scan<'_> {
     fn instance(&mut self, kind: Kind, list: &[MemoryId], out: &mut Vec<St>) {
         let first = list.first().map_or("", |m| self.memories.name(*m));
         let Some((instance, _)) = first.split_once('.') else {
-            return self.cannot("a function block of this kind");
+            return self.cannot(say!("a function block of this kind"));
         };
         let (instance, head) = (instance.to_owned(), format!("{instance}."));
         let mut inputs = Vec::new();

@@ -2,7 +2,7 @@
 
 use g7_engine::{Arith, Builtin, Cmp};
 use g7_equations::{Class, Expr, MemoryId, What};
-use g7_model::{Nanos, Type};
+use g7_model::{Nanos, Said, Type, say};
 
 use super::form::{Ex, narrow};
 use super::memories::{literal, type_name};
@@ -17,7 +17,7 @@ impl Scan<'_> {
     pub(super) fn ex(&mut self, e: &Expr) -> Ex {
         match e {
             Expr::Const(ty, word) => literal(*ty, *word),
-            Expr::Text(_) => self.cannot_ex("a text"),
+            Expr::Text(_) => self.cannot_ex(say!("a text")),
             Expr::Read(m) => self.read(*m),
             Expr::Element(m, index) => {
                 let index = narrow(self.ex(index));
@@ -39,8 +39,8 @@ impl Scan<'_> {
             Expr::Convert(from, to, x) => self.convert(*from, *to, x),
             Expr::Trunc(_, _, x) => Ex::call("TRUNC", vec![self.ex(x)]),
             Expr::Call(f, ty, args) => self.call(*f, *ty, args),
-            Expr::Random(_) => self.cannot_ex("a random number"),
-            Expr::Fails(_) => self.cannot_ex("a text"),
+            Expr::Random(_) => self.cannot_ex(say!("a random number")),
+            Expr::Fails(_) => self.cannot_ex(say!("a text")),
         }
     }
 
@@ -53,7 +53,7 @@ impl Scan<'_> {
         }
     }
 
-    fn cannot_ex(&mut self, what: &str) -> Ex {
+    fn cannot_ex(&mut self, what: Said) -> Ex {
         self.cannot(what);
         Ex::Bool(false)
     }
@@ -62,7 +62,7 @@ impl Scan<'_> {
         let Some(memory) = self.e.memory(m) else { return Ex::Bool(false) };
         match (memory.what, memory.class, memory.ty) {
             (What::Started, ..) => Ex::var("FIRST").not(),
-            (_, _, Type::String(_)) => self.cannot_ex("a text"),
+            (_, _, Type::String(_)) => self.cannot_ex(say!("a text")),
             // A constant stands for its value.
             (_, Class::Constant, ty) if memory.elements == 1 => {
                 literal(ty, memory.init.first().copied().unwrap_or(0))
@@ -132,7 +132,7 @@ impl Scan<'_> {
             (Arith::Mul, Some(k), _) => Some((b, k)),
             _ => None,
         };
-        let Some((time, k)) = found else { return self.cannot_ex("a TIME taken as a number") };
+        let Some((time, k)) = found else { return self.cannot_ex(say!("a TIME taken as a number")) };
         Ex::op(sign, self.ex(time), narrow(self.ex(&k)))
     }
 
@@ -245,7 +245,7 @@ impl Scan<'_> {
             return self.ex(x);
         }
         if matches!(from, Type::String(_)) || matches!(to, Type::String(_)) {
-            return self.cannot_ex("a text");
+            return self.cannot_ex(say!("a text"));
         }
         if to == Type::Time
             && let Expr::Arith(op @ (Arith::Mul | Arith::Div), _, time, by) = x
@@ -259,9 +259,9 @@ impl Scan<'_> {
             return match x {
                 Expr::Const(..) if to == Type::Time => match self.ex(x) {
                     Ex::Int(n) => Ex::Time(i64::try_from(n).map_or(Nanos::MAX, Nanos::new)),
-                    _ => self.cannot_ex("a TIME taken as a number"),
+                    _ => self.cannot_ex(say!("a TIME taken as a number")),
                 },
-                _ => self.cannot_ex("a TIME taken as a number"),
+                _ => self.cannot_ex(say!("a TIME taken as a number")),
             };
         }
         let e = self.ex(x);
@@ -281,7 +281,7 @@ impl Scan<'_> {
 
     fn call(&mut self, f: Builtin, ty: Type, args: &[Expr]) -> Ex {
         if f.is_of_texts() || matches!(ty, Type::String(_)) {
-            return self.cannot_ex("a text");
+            return self.cannot_ex(say!("a text"));
         }
         if f.shifts()
             && let [bits, count] = args
@@ -303,7 +303,7 @@ impl Scan<'_> {
     /// so it is never asked for.
     fn shifted(&mut self, f: Builtin, ty: Type, bits: &Expr, count: &Expr) -> Ex {
         let (Some(string), Some(row)) = (ty.bit_string(), ty.elementary()) else {
-            return self.cannot_ex("a shift of this type");
+            return self.cannot_ex(say!("a shift of this type"));
         };
         let width = i128::from(row.bits);
         let x = Ex::call(format!("{}_TO_{string}", row.name), vec![self.ex(bits)]);

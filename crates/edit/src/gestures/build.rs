@@ -1,6 +1,6 @@
 //! Adds steps and transitions after, before and beside others.
 
-use g7_model::{Chart, ChartKind, Span, StepKind};
+use g7_model::{Chart, ChartKind, Span, StepKind, say};
 
 use super::graph::{add, leaving, may_arrive, may_leave, put_step, put_step_before, put_transition};
 use super::nodes::{Node, node};
@@ -144,9 +144,9 @@ pub(crate) fn branch(d: &mut Draft<'_>, id: &ItemId, how: Branching) -> Result<(
             let behind: Vec<Span> = leaving(home, &step).map(|t| t.at.0).collect();
             match behind.as_slice() {
                 [one] => step_behind(d, chart, *one),
-                _ => refuse(
-                    "simultaneous sequences begin behind one transition; choose the transition, not the step",
-                ),
+                _ => refuse(say!(
+                    "simultaneous sequences begin behind one transition; choose the transition, not the step"
+                )),
             }
         }
         (Node::Transition(at), Branching::And) => step_behind(d, chart, at),
@@ -154,7 +154,7 @@ pub(crate) fn branch(d: &mut Draft<'_>, id: &ItemId, how: Branching) -> Result<(
             let from: Vec<String> =
                 d.transition(chart, at)?.from.iter().map(|n| n.text.to_string()).collect();
             let Some(last) = from.last().cloned() else {
-                return refuse("alternatives begin behind a step; this transition has none before it");
+                return refuse(say!("alternatives begin behind a step; this transition has none before it"));
             };
             let name = d.step_name(d.chart(chart)?);
             let names: Vec<&str> = from.iter().map(String::as_str).collect();

@@ -16,7 +16,7 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use g7_model::{Chart, ChartItem, Name, Span, Transition};
+use g7_model::{Chart, ChartItem, Name, Span, Transition, say};
 
 use super::graph::{has, replace};
 use super::nodes::{Node, node, one_chart};
@@ -63,7 +63,7 @@ impl Chosen {
 
 pub(crate) fn delete(d: &mut Draft<'_>, ids: &[ItemId], heal: bool) -> Result<(), Refusal> {
     if ids.is_empty() {
-        return refuse("nothing is chosen");
+        return refuse(say!("nothing is chosen"));
     }
     let mut nodes: Vec<ItemId> = Vec::new();
     let mut links: Vec<(String, String, Span, bool)> = Vec::new();
@@ -80,8 +80,10 @@ pub(crate) fn delete(d: &mut Draft<'_>, ids: &[ItemId], heal: bool) -> Result<()
             Part::Note(n) => {
                 notes.entry(id.chart.clone()).or_default().insert(*n);
             }
-            Part::Chart => return refuse("a chart is deleted as a whole, not with symbols"),
-            Part::Other(_) => return refuse("this is only drawn; nothing in the text stands for it alone"),
+            Part::Chart => return refuse(say!("a chart is deleted as a whole, not with symbols")),
+            Part::Other(_) => {
+                return refuse(say!("this is only drawn; nothing in the text stands for it alone"));
+            }
         }
     }
     for (chart, numbers) in &notes {
@@ -113,7 +115,7 @@ fn link(d: &Draft<'_>, chart: &str, a: &End, b: &End) -> Result<(String, String,
     let (step, number, leaving) = match (a, b) {
         (End::Step(s), End::Transition(t)) => (s, *t, true),
         (End::Transition(t), End::Step(s)) => (s, *t, false),
-        _ => return refuse("a link joins a step and a transition"),
+        _ => return refuse(say!("a link joins a step and a transition")),
     };
     Ok((chart.to_owned(), step.clone(), d.number(chart, number)?, leaving))
 }

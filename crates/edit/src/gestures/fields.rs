@@ -1,6 +1,6 @@
 //! Changes single fields of steps, transitions and charts.
 
-use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind};
+use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind, say};
 
 use super::graph::{arriving, leaving, may_arrive, may_leave};
 use super::nodes::{Node, node};
@@ -14,7 +14,7 @@ use crate::id::{ItemId, Part};
 fn transition(d: &Draft<'_>, id: &ItemId) -> Result<g7_model::Span, Refusal> {
     match node(d, id)? {
         Node::Transition(at) => Ok(at),
-        Node::Step(_) => refuse("this belongs to a transition, not to a step"),
+        Node::Step(_) => refuse(say!("this belongs to a transition, not to a step")),
     }
 }
 
@@ -22,7 +22,7 @@ fn transition(d: &Draft<'_>, id: &ItemId) -> Result<g7_model::Span, Refusal> {
 fn step(d: &Draft<'_>, id: &ItemId) -> Result<String, Refusal> {
     match node(d, id)? {
         Node::Step(name) => Ok(name),
-        Node::Transition(_) => refuse("this belongs to a step, not to a transition"),
+        Node::Transition(_) => refuse(say!("this belongs to a step, not to a transition")),
     }
 }
 
@@ -32,7 +32,7 @@ pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<
     let typed = if typed.is_empty() { "TRUE" } else { typed };
     let (mut e, problems) = g7_syntax::parse_expr(typed, FileId(0));
     if let Some(problem) = problems.first() {
-        return refuse(format!("this is not a receptivity: {problem}"));
+        return refuse(say!("this is not a receptivity: {}", problem.what));
     }
     e.at = d.fresh_as(typed);
     d.transition_mut(&id.chart, at)?.receptivity = e;
@@ -46,12 +46,12 @@ pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>,
     let whole = format!("{HEAD}{text}\n}}\n}}\n");
     let (doc, problems) = g7_syntax::parse(&whole, FileId(0));
     if let Some(problem) = problems.first() {
-        return refuse(format!("this is not an action: {problem}"));
+        return refuse(say!("this is not an action: {}", problem.what));
     }
     let mut charts = doc.charts();
     let items = charts.next().map(|c| c.items.as_slice()).unwrap_or_default();
     let ([ChartItem::Step(step)], None, 1) = (items, charts.next(), doc.items.len()) else {
-        return refuse("this is more than the actions of one step");
+        return refuse(say!("this is more than the actions of one step"));
     };
     let mut actions = Vec::new();
     for (k, action) in step.actions.iter().enumerate() {
@@ -93,7 +93,7 @@ pub(crate) fn action(
             k
         }
         Some(k) if k > there.actions.len() => {
-            return refuse(format!("step `{name}` has no action number {k}"));
+            return refuse(say!("step `{name}` has no action number {k}"));
         }
         _ => {
             there.actions.extend(new);
@@ -107,7 +107,7 @@ pub(crate) fn action(
 pub(crate) fn remove_action(d: &mut Draft<'_>, chart: &str, name: &str, k: usize) -> Result<(), Refusal> {
     let step = d.step_mut(chart, name)?;
     if k >= step.actions.len() {
-        return refuse(format!("step `{name}` has no action number {k}"));
+        return refuse(say!("step `{name}` has no action number {k}"));
     }
     step.actions.remove(k);
     Ok(())
@@ -139,7 +139,7 @@ pub(crate) fn label(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Re
     }
     let taken = d.chart(&id.chart)?.transitions().any(|t| t.label.as_ref().is_some_and(|l| *l.text == *text));
     if taken {
-        return refuse(format!("another transition has the label `{text}` already"));
+        return refuse(say!("another transition has the label `{text}` already"));
     }
     let new = if text.is_empty() { None } else { Some(d.new_name(text)) };
     super::places::relabel(d, &id.chart, at, old.as_deref(), new.as_ref())?;
@@ -185,7 +185,7 @@ pub(crate) fn ends(
     }
     let t = d.transition(&id.chart, at)?;
     if t.from.is_empty() && t.to.is_empty() {
-        return refuse("a transition joins steps: leave it one at least");
+        return refuse(say!("a transition joins steps: leave it one at least"));
     }
     d.select(id.clone());
     Ok(())
@@ -221,18 +221,24 @@ pub(crate) fn kind(d: &mut Draft<'_>, id: &ItemId, sort: Sort) -> Result<(), Ref
 fn end(d: &Draft<'_>, chart: &str, name: &str, sort: Sort) -> Result<StepKind, Refusal> {
     let home = d.chart(chart)?;
     let entry = sort == Sort::Entry;
-    let (word, kind) = if entry { ("entry", StepKind::Entry) } else { ("exit", StepKind::Exit) };
+    let kind = if entry { StepKind::Entry } else { StepKind::Exit };
     if home.kind == ChartKind::Chart {
-        return refuse(format!("an {word} step belongs to an expansion or a task, `{chart}` is a chart"));
+        return refuse(match entry {
+            true => say!("an entry step belongs to an expansion or a task, `{chart}` is a chart"),
+            false => say!("an exit step belongs to an expansion or a task, `{chart}` is a chart"),
+        });
     }
     if let Some(other) = home.steps().find(|s| s.kind == kind && *s.name.text != *name) {
-        return refuse(format!("`{chart}` has its {word} step already, `{}`", other.name.text));
+        return refuse(match entry {
+            true => say!("`{chart}` has its entry step already, `{}`", other.name.text),
+            false => say!("`{chart}` has its exit step already, `{}`", other.name.text),
+        });
     }
     if entry && arriving(home, name).next().is_some() {
-        return refuse(format!("a transition leads to step `{name}`; nothing leads to an entry step"));
+        return refuse(say!("a transition leads to step `{name}`; nothing leads to an entry step"));
     }
     if !entry && leaving(home, name).next().is_some() {
-        return refuse(format!("a transition follows step `{name}`; nothing follows an exit step"));
+        return refuse(say!("a transition follows step `{name}`; nothing follows an exit step"));
     }
     Ok(kind)
 }

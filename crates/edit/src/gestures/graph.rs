@@ -4,7 +4,7 @@
 //! after the step that it follows, a new transition after those that leave the same step. If steps
 //! and transitions alternate in the text, the new ones alternate too.
 
-use g7_model::{Chart, ChartItem, Name, Span, Step, StepKind, Transition};
+use g7_model::{Chart, ChartItem, Name, Span, Step, StepKind, Transition, say};
 
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
@@ -28,7 +28,7 @@ pub(crate) fn arriving<'c>(chart: &'c Chart, step: &'c str) -> impl Iterator<Ite
 /// that role.
 pub(crate) fn may_leave(step: &Step) -> Result<(), Refusal> {
     if step.kind == StepKind::Exit {
-        return refuse(format!(
+        return refuse(say!(
             "nothing follows the exit step `{}`: the transition behind the macro-step or the calling step does",
             step.name.text
         ));
@@ -39,7 +39,7 @@ pub(crate) fn may_leave(step: &Step) -> Result<(), Refusal> {
 /// Refuses a link to an entry step: its macro-step or caller activates it.
 pub(crate) fn may_arrive(step: &Step) -> Result<(), Refusal> {
     if step.kind == StepKind::Entry {
-        return refuse(format!(
+        return refuse(say!(
             "nothing leads to the entry step `{}`: the macro-step or the calling step activates it",
             step.name.text
         ));
@@ -53,8 +53,10 @@ pub(crate) fn add(d: &mut Draft<'_>, chart: &str, at: Span, step: &str, to: bool
     let t = d.transition_mut(chart, at)?;
     let list = if to { &mut t.to } else { &mut t.from };
     if has(list, step) {
-        let side = if to { "behind" } else { "before" };
-        return refuse(format!("step `{step}` stands {side} this transition already"));
+        return refuse(match to {
+            true => say!("step `{step}` stands behind this transition already"),
+            false => say!("step `{step}` stands before this transition already"),
+        });
     }
     list.push(name);
     Ok(())

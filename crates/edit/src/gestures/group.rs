@@ -7,7 +7,7 @@
 
 use g7_compile::references::Written;
 use g7_compile::{Definition, references};
-use g7_model::{Chart, ChartItem, FileId, Item, Name, Span, Step, StepKind, Transition};
+use g7_model::{Chart, ChartItem, FileId, Item, Name, Span, Step, StepKind, Transition, say};
 use g7_syntax::{Part, print_part, show_name, show_path_name, show_step_name};
 
 use super::delete::Chosen;
@@ -40,7 +40,7 @@ pub(crate) fn into_macro(d: &mut Draft<'_>, ids: &[ItemId]) -> Result<(), Refusa
     let text = expansion_text(d, &home, &sequence, (&name, &expansion))?;
     let (doc, problems) = g7_syntax::parse(&text, FileId(0));
     let (Some(new), None) = (doc.charts().next(), problems.first()) else {
-        return refuse("this sequence cannot be written as an expansion");
+        return refuse(say!("this sequence cannot be written as an expansion"));
     };
     let mut new = new.clone();
     new.at = d.fresh_as(text.trim_end());
@@ -55,10 +55,10 @@ fn sequence(home: &Chart, chosen: &Chosen) -> Result<Sequence, Refusal> {
     let inside = |n: &Name| chosen.has_step(&n.text);
     let steps: Vec<Step> = home.steps().filter(|s| inside(&s.name)).cloned().collect();
     if steps.is_empty() {
-        return refuse("choose the steps that go into the macro-step");
+        return refuse(say!("choose the steps that go into the macro-step"));
     }
     if let Some(s) = steps.iter().find(|s| matches!(s.kind, StepKind::Entry | StepKind::Exit)) {
-        return refuse(format!("step `{}` is an end of its chart and stays there", s.name.text));
+        return refuse(say!("step `{}` is an end of its chart and stays there", s.name.text));
     }
     let within =
         |t: &&Transition| t.from.iter().chain(&t.to).all(inside) && !(t.from.is_empty() && t.to.is_empty());
@@ -69,13 +69,12 @@ fn sequence(home: &Chart, chosen: &Chosen) -> Result<Sequence, Refusal> {
     let first = one_end(&entered, &steps, |s| s.initial || !inner.iter().any(|t| t.to.contains(&s.name)));
     let last = one_end(&left, &steps, |s| !inner.iter().any(|t| t.from.contains(&s.name)));
     let (Some(first), Some(last)) = (first, last) else {
-        return refuse("a macro-step is entered at one step and left at one step; choose such a sequence");
+        return refuse(say!(
+            "a macro-step is entered at one step and left at one step; choose such a sequence"
+        ));
     };
     if let Some(s) = steps.iter().find(|s| s.initial && *s.name.text != *first) {
-        return refuse(format!(
-            "step `{}` is initial; in a macro-step only its first step can be",
-            s.name.text
-        ));
+        return refuse(say!("step `{}` is initial; in a macro-step only its first step can be", s.name.text));
     }
     let plain = |name: &str| steps.iter().any(|s| *s.name.text == *name && s.kind == StepKind::Plain);
     let entry = plain(&first) && !inner.iter().any(|t| t.to.iter().any(|n| *n.text == *first));
@@ -164,7 +163,7 @@ fn moved_text(d: &Draft<'_>, at: Span, splices: Vec<Splice>) -> Result<String, R
     let text = d.source.text.get(start..end).unwrap_or_default();
     let line = d.source.text.get(..start).unwrap_or_default().rsplit('\n').next().unwrap_or_default();
     let indent = line.get(..line.len() - line.trim_start().len()).unwrap_or_default();
-    let text = spliced(text, &own).ok_or_else(|| Refusal::new("this sequence cannot be moved"))?;
+    let text = spliced(text, &own).ok_or_else(|| Refusal::new(say!("this sequence cannot be moved")))?;
     Ok(reindent(&text, indent, "", "\n"))
 }
 

@@ -1,6 +1,6 @@
 //! Inserts parts into a link or beside a sequence.
 
-use g7_model::{Span, StepKind};
+use g7_model::{Span, StepKind, say};
 
 use super::build::fresh_step;
 use super::delete::Chosen;
@@ -16,7 +16,7 @@ pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(),
     let chart = link.chart.as_str();
     let (from, to) = match &link.part {
         Part::Link(from, to) | Part::Connector(from, to, _) => (from, to),
-        _ => return refuse("something is inserted into a link; choose a link"),
+        _ => return refuse(say!("something is inserted into a link; choose a link")),
     };
     let (step, at, leaving) = ends(d, chart, from, to)?;
     let mut name = d.step_name(d.chart(chart)?);
@@ -53,13 +53,13 @@ fn ends(d: &Draft<'_>, chart: &str, from: &End, to: &End) -> Result<(String, Spa
     let (step, number, leaving) = match (from, to) {
         (End::Step(s), End::Transition(t)) => (s, *t, true),
         (End::Transition(t), End::Step(s)) => (s, *t, false),
-        _ => return refuse("a link joins a step and a transition"),
+        _ => return refuse(say!("a link joins a step and a transition")),
     };
     let at = d.number(chart, number)?;
     let t = d.transition(chart, at)?;
     let list = if leaving { &t.from } else { &t.to };
     if !super::graph::has(list, step) {
-        return refuse("this link no longer exists");
+        return refuse(say!("this link no longer exists"));
     }
     Ok((step.clone(), at, leaving))
 }
@@ -95,10 +95,10 @@ pub(crate) fn parallel(d: &mut Draft<'_>, ids: &[ItemId]) -> Result<(), Refusal>
         (before.clone(), behind.clone())
     };
     let ([first], [last]) = (before.as_slice(), behind.as_slice()) else {
-        return refuse(
+        return refuse(say!(
             "simultaneous sequences begin and end at one transition each: choose a sequence with one \
-             transition before it and one behind it",
-        );
+             transition before it and one behind it"
+        ));
     };
     let name = fresh_step(d, &chart, chosen.steps.last().map(String::as_str))?;
     add(d, &chart, *first, &name, true)?;

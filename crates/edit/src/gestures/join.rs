@@ -1,7 +1,7 @@
 //! Adds links between existing parts. Steps and transitions alternate, so a missing one is inserted
 //! between two of the same kind.
 
-use g7_model::{Chart, Name, Span};
+use g7_model::{Chart, Name, Span, say};
 
 use super::build::fresh_step;
 use super::graph::{add, has, may_arrive, may_leave, put_transition};
@@ -13,9 +13,9 @@ use crate::id::ItemId;
 
 pub(crate) fn connect(d: &mut Draft<'_>, from: &ItemId, to: &ItemId) -> Result<(), Refusal> {
     if from.chart != to.chart {
-        return refuse(
-            "a link stays within its chart; charts act on each other by forcing and by X variables",
-        );
+        return refuse(say!(
+            "a link stays within its chart; charts act on each other by forcing and by X variables"
+        ));
     }
     let chart = from.chart.as_str();
     match (node(d, from)?, node(d, to)?) {
@@ -32,7 +32,9 @@ pub(crate) fn connect(d: &mut Draft<'_>, from: &ItemId, to: &ItemId) -> Result<(
         (Node::Step(a), Node::Step(b)) => link_steps(d, chart, &[&a], &b)?,
         (Node::Transition(a), Node::Transition(b)) => {
             if a == b {
-                return refuse("a transition cannot follow itself; a step stands between two transitions");
+                return refuse(say!(
+                    "a transition cannot follow itself; a step stands between two transitions"
+                ));
             }
             let near = d.transition(chart, a)?.from.last().map(|n| n.text.to_string());
             let name = fresh_step(d, chart, near.as_deref())?;
@@ -62,10 +64,10 @@ fn link_steps(d: &mut Draft<'_>, chart: &str, from: &[&str], to: &str) -> Result
 /// instead.
 pub(crate) fn jump(d: &mut Draft<'_>, id: &ItemId, to: &ItemId) -> Result<(), Refusal> {
     if id.chart != to.chart {
-        return refuse("a jump stays within its chart");
+        return refuse(say!("a jump stays within its chart"));
     }
     let chart = id.chart.as_str();
-    let Node::Step(target) = node(d, to)? else { return refuse("a jump leads to a step") };
+    let Node::Step(target) = node(d, to)? else { return refuse(say!("a jump leads to a step")) };
     match node(d, id)? {
         Node::Step(step) => link_steps(d, chart, &[&step], &target),
         Node::Transition(at) => {
@@ -73,12 +75,12 @@ pub(crate) fn jump(d: &mut Draft<'_>, id: &ItemId, to: &ItemId) -> Result<(), Re
             let name = d.new_name(&target);
             let t = d.transition_mut(chart, at)?;
             if t.to.len() > 1 {
-                return refuse(
-                    "this transition begins simultaneous sequences; take the link away that is to go",
-                );
+                return refuse(say!(
+                    "this transition begins simultaneous sequences; take the link away that is to go"
+                ));
             }
             if has(&t.to, &target) {
-                return refuse(format!("this transition leads to step `{target}` already"));
+                return refuse(say!("this transition leads to step `{target}` already"));
             }
             t.to = vec![name];
             d.select(to.clone());
@@ -97,7 +99,7 @@ pub(crate) fn converge(
 ) -> Result<(), Refusal> {
     let chart = one_chart(ids)?.to_owned();
     if to.is_some_and(|t| t.chart != chart) {
-        return refuse("branches come together within their chart");
+        return refuse(say!("branches come together within their chart"));
     }
     let (mut steps, mut transitions) = (Vec::new(), Vec::new());
     for id in ids {
@@ -108,7 +110,7 @@ pub(crate) fn converge(
         }
     }
     if steps.len() + transitions.len() < 2 {
-        return refuse("several branches come together; choose the end of each");
+        return refuse(say!("several branches come together; choose the end of each"));
     }
     for step in &steps {
         may_leave(d.step(&chart, step)?)?;
@@ -133,7 +135,7 @@ fn target(d: &mut Draft<'_>, chart: &str, steps: &[String], to: Option<&ItemId>)
             may_arrive(d.step(chart, &step)?)?;
             Ok(step)
         }
-        Node::Transition(_) => refuse("branches lead together to a step"),
+        Node::Transition(_) => refuse(say!("branches lead together to a step")),
     }
 }
 
@@ -146,7 +148,7 @@ fn alternatives(
 ) -> Result<(), Refusal> {
     for t in transitions {
         if !d.transition(chart, *t)?.to.is_empty() {
-            return refuse("a chosen transition leads to a step already; choose the end of the branch");
+            return refuse(say!("a chosen transition leads to a step already; choose the end of the branch"));
         }
     }
     let mut known = steps.to_vec();
@@ -155,7 +157,7 @@ fn alternatives(
     }
     let target = target(d, chart, &known, to)?;
     if steps.contains(&target) {
-        return refuse(format!("step `{target}` is one of the branches"));
+        return refuse(say!("step `{target}` is one of the branches"));
     }
     for step in steps {
         let t = d.new_transition(&[step], &[&target]);
@@ -192,6 +194,6 @@ fn simultaneous(
             }
             Ok(())
         }
-        _ => refuse("simultaneous sequences end at one transition; choose their last steps"),
+        _ => refuse(say!("simultaneous sequences end at one transition; choose their last steps")),
     }
 }

@@ -1,6 +1,6 @@
 //! Access to the layout section of a chart, and its unit of length.
 
-use g7_model::{Document, Item, Layout};
+use g7_model::{Document, Item, Layout, say};
 
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
@@ -16,11 +16,11 @@ pub(crate) fn point([x, y]: [f64; 2]) -> Result<(i32, i32), Refusal> {
 fn hundredths(px: f64) -> Result<i32, Refusal> {
     let n = (px * 10.0).round();
     if n.is_nan() || n.abs() > FARTHEST as f64 {
-        return refuse("this place is too far away");
+        return refuse(say!("this place is too far away"));
     }
     #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]
     let n = n as i64;
-    i32::try_from(n).or_else(|_| refuse("this place is too far away"))
+    i32::try_from(n).or_else(|_| refuse(say!("this place is too far away")))
 }
 
 /// The layout section of a chart; the first one if there are several, as in the drawing.

@@ -19,6 +19,8 @@ mod table;
 pub(crate) use rename::{rename, rename_at};
 pub(crate) use table::renamed_row;
 
+use g7_model::say;
+
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::Gesture;
@@ -59,6 +61,8 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Switch { name, on } => settings::switch(d, name, *on),
         Gesture::Bound { n } => settings::bound(d, *n),
         Gesture::Scan { ms } => settings::scan(d, *ms),
-        Gesture::Rename { .. } | Gesture::Text { .. } => refuse("this gesture is not one of the drawing"),
+        Gesture::Rename { .. } | Gesture::Text { .. } => {
+            refuse(say!("this gesture is not one of the drawing"))
+        }
     }
 }

@@ -3,6 +3,8 @@
 //! A gesture begins here: its ids come from the drawing and may be out of date, so an id is never
 //! used before the draft has been found to contain its part.
 
+use g7_model::say;
+
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::id::{ItemId, Part};
@@ -24,22 +26,22 @@ pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
         }
         Part::Action(name, k) => {
             if d.step(&id.chart, name)?.actions.get(*k).is_none() {
-                return refuse(format!("step `{name}` has no action number {k}"));
+                return refuse(say!("step `{name}` has no action number {k}"));
             }
             Ok(Node::Step(name.clone()))
         }
         Part::Transition(n) => Ok(Node::Transition(d.number(&id.chart, *n)?)),
         Part::Chart | Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {
-            refuse("this is done with a step or a transition; choose one")
+            refuse(say!("this is done with a step or a transition; choose one"))
         }
     }
 }
 
 /// The chart of all ids; refuses ids of several charts.
 pub(crate) fn one_chart(ids: &[ItemId]) -> Result<&str, Refusal> {
-    let Some(first) = ids.first() else { return refuse("nothing is chosen") };
+    let Some(first) = ids.first() else { return refuse(say!("nothing is chosen")) };
     if ids.iter().any(|id| id.chart != first.chart) {
-        return refuse("the chosen things are of several charts; this is done in one");
+        return refuse(say!("the chosen things are of several charts; this is done in one"));
     }
     Ok(&first.chart)
 }

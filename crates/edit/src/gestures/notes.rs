@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use g7_model::{Item, Layout, PlaceAt, Placed};
+use g7_model::{Item, Layout, PlaceAt, Placed, say};
 
 use super::layout_section::{self, point};
 use crate::change::{Refusal, refuse};
@@ -15,7 +15,7 @@ pub(crate) fn add(d: &mut Draft<'_>, chart: &str, text: &str, at: [f64; 2]) -> R
     let (x, y) = point(at)?;
     let text = text.trim();
     if text.is_empty() {
-        return refuse("a comment says something");
+        return refuse(say!("a comment says something"));
     }
     put(d, chart, text, (x, y));
     Ok(())
@@ -90,5 +90,5 @@ fn note_mut<'d>(d: &'d mut Draft<'_>, chart: &str, n: usize) -> Result<&'d mut P
 }
 
 fn none(chart: &str) -> Refusal {
-    Refusal::new(format!("the layout of chart `{chart}` does not have this comment"))
+    Refusal::new(say!("the layout of chart `{chart}` does not have this comment"))
 }

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 use g7_compile::{Definition, references};
 use g7_model::{
     Chart, ChartItem, ChartKind, Document, FileId, Item, Layout, PlaceAt, Placed, Span, Step, StepKind,
-    Transition, VarDecl,
+    Transition, VarDecl, say,
 };
 
 use super::graph::put_step;
@@ -29,7 +29,7 @@ pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64;
     let (text, doc) = fragment(text)?;
     let (text, doc) = without_clashes(d, chart, text, doc)?;
     let mut charts = doc.charts();
-    let Some(part) = charts.next() else { return refuse("there is nothing to paste") };
+    let Some(part) = charts.next() else { return refuse(say!("there is nothing to paste")) };
     let mut pasted = Pasted::default();
     for item in &part.items {
         match item {
@@ -40,7 +40,7 @@ pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64;
             ChartItem::Transition(t) => pasted.transitions.push(paste_transition(d, chart, &text, t)?),
             // `declare` adds the variables that are needed.
             ChartItem::Var(_) => {}
-            _ => return refuse("only steps and transitions are pasted into a chart"),
+            _ => return refuse(say!("only steps and transitions are pasted into a chart")),
         }
     }
     for expansion in charts {
@@ -50,7 +50,7 @@ pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64;
     let at = at.map(layout_section::point).transpose()?;
     pasted.put(d, chart, layout_section::layout(&doc, &part.name.text), at)?;
     if d.select.is_empty() {
-        return refuse("there is nothing to paste");
+        return refuse(say!("there is nothing to paste"));
     }
     Ok(())
 }
@@ -189,7 +189,7 @@ fn sort(v: &VarDecl) -> String {
 /// Reads the text to paste: a small file, or only the lines of a chart.
 fn fragment(text: &str) -> Result<(String, Document), Refusal> {
     if text.len() > MOST {
-        return refuse("this is too long to be pasted into a chart");
+        return refuse(say!("this is too long to be pasted into a chart"));
     }
     let (doc, problems) = g7_syntax::parse(text, FileId(0));
     if problems.is_empty() && doc.charts().next().is_some() {
@@ -198,7 +198,7 @@ fn fragment(text: &str) -> Result<(String, Document), Refusal> {
     let wrapped = format!("chart Fragment {{\n{text}\n}}\n");
     let (doc, problems) = g7_syntax::parse(&wrapped, FileId(0));
     match problems.first() {
-        Some(_) => refuse("this is not a part of a chart"),
+        Some(_) => refuse(say!("this is not a part of a chart")),
         None => Ok((wrapped, doc)),
     }
 }
@@ -240,9 +240,9 @@ fn without_clashes(
         }
     }
     splices.sort_by_key(|s| (s.start, s.end));
-    let text = spliced(&text, &splices).ok_or_else(|| Refusal::new("this is not a part of a chart"))?;
+    let text = spliced(&text, &splices).ok_or_else(|| Refusal::new(say!("this is not a part of a chart")))?;
     let (doc, problems) = g7_syntax::parse(&text, FileId(0));
-    if problems.is_empty() { Ok((text, doc)) } else { refuse("this is not a part of a chart") }
+    if problems.is_empty() { Ok((text, doc)) } else { refuse(say!("this is not a part of a chart")) }
 }
 
 /// New names for those that already exist: the next number, or the name with a number appended.

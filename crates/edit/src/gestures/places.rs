@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::{Item, Name, PlaceAt, Placed, Span};
+use g7_model::{Item, Name, PlaceAt, Placed, Span, say};
 
 use super::layout_section::{FARTHEST, point, with_layout, without_empty_layout};
 use super::nodes::{Node, node, one_chart};
@@ -89,7 +89,7 @@ fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
         _ => None,
     });
     let found = layouts.flat_map(|l| &l.places).find(|p| named(p)).map(|p| (p.x, p.y));
-    found.ok_or_else(|| Refusal::new("where this stands on the drawing is not known yet"))
+    found.ok_or_else(|| Refusal::new(say!("where this stands on the drawing is not known yet")))
 }
 
 /// The places of the steps, transitions and comments among the ids; an action counts as its step.
@@ -105,7 +105,7 @@ fn anchors(d: &Draft<'_>, ids: &[ItemId]) -> Result<BTreeMap<ItemId, (i32, i32)>
         let at = anchor(d, &id)?;
         found.insert(id, at);
     }
-    if found.is_empty() { refuse("choose steps or transitions to move") } else { Ok(found) }
+    if found.is_empty() { refuse(say!("choose steps or transitions to move")) } else { Ok(found) }
 }
 
 fn put(d: &mut Draft<'_>, places: &BTreeMap<ItemId, (i32, i32)>) -> Result<(), Refusal> {
@@ -128,16 +128,16 @@ pub(crate) fn shift(d: &mut Draft<'_>, ids: &[ItemId], dx: f64, dy: f64) -> Resu
 
 fn bounded(n: i64) -> Result<i32, Refusal> {
     if n.abs() > FARTHEST {
-        return refuse("this place is too far away");
+        return refuse(say!("this place is too far away"));
     }
-    i32::try_from(n).or_else(|_| refuse("this place is too far away"))
+    i32::try_from(n).or_else(|_| refuse(say!("this place is too far away")))
 }
 
 pub(crate) fn align(d: &mut Draft<'_>, ids: &[ItemId], how: Alignment) -> Result<(), Refusal> {
     one_chart(ids)?;
     let mut places = anchors(d, ids)?;
     if places.len() < 2 {
-        return refuse("choose several steps or transitions to bring into line");
+        return refuse(say!("choose several steps or transitions to bring into line"));
     }
     let xs: Vec<i32> = places.values().map(|p| p.0).collect();
     let ys: Vec<i32> = places.values().map(|p| p.1).collect();

@@ -6,7 +6,7 @@
 
 use g7_compile::references::{Use, Written};
 use g7_compile::{Definition, References, references};
-use g7_model::{Item, Span};
+use g7_model::{Item, Said, Span, say};
 use g7_syntax::{Tree, show_name, show_path_name, show_step_name};
 
 use crate::change::{Edit, Refusal, Source, refuse};
@@ -23,7 +23,7 @@ pub(crate) fn rename(
 ) -> Result<Edit, Refusal> {
     let to = to.trim();
     if to.is_empty() {
-        return refuse("a name cannot be empty");
+        return refuse(say!("a name cannot be empty"));
     }
     let refs = references(source.document);
     let definition = defined(source, &refs, id, name)?;
@@ -35,12 +35,12 @@ pub(crate) fn rename(
 pub(crate) fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
     let to = to.trim();
     if to.is_empty() {
-        return refuse("a name cannot be empty");
+        return refuse(say!("a name cannot be empty"));
     }
     let refs = references(source.document);
     match refs.at(u32::try_from(at).unwrap_or(u32::MAX)).cloned() {
         Some(definition) => everywhere(source, &refs, definition, to),
-        None => refuse("there is no name here that can be changed"),
+        None => refuse(say!("there is no name here that can be changed")),
     }
 }
 
@@ -55,14 +55,14 @@ fn everywhere(
         return Ok(Edit::default());
     }
     if refs.declaration(&new).is_some() || taken(source, &new) {
-        return refuse(format!("there is {} `{to}` already", kind(&definition)));
+        return refuse(there_already(&definition, to));
     }
     let mut splices = Vec::new();
     for found in refs.uses_of(&definition) {
         splices.push(written(source.text, found, to)?);
     }
     let splices = tidied(source.text, splices);
-    let tree = read(source, &splices).ok_or_else(|| Refusal::new("the name cannot be written here"))?;
+    let tree = read(source, &splices).ok_or_else(|| Refusal::new(say!("the name cannot be written here")))?;
     judge(refs, &tree, &definition, &new, &splices)?;
     Ok(Edit { splices, read: Some(Box::new(tree)), ..Edit::default() })
 }
@@ -84,19 +84,19 @@ fn defined(
                 let chart = source.document.charts().find(|c| *c.name.text == *id.chart);
                 let label = chart.and_then(|c| c.transitions().nth(*n)).and_then(|t| t.label.as_ref());
                 let Some(label) = label else {
-                    return refuse("this transition has no label; give it one first");
+                    return refuse(say!("this transition has no label; give it one first"));
                 };
                 Definition::Transition { chart: id.chart.clone(), label: label.text.to_string() }
             }
             Part::Link(..) | Part::Connector(..) | Part::Note(_) | Part::Other(_) => {
-                return refuse("this has no name of its own");
+                return refuse(say!("this has no name of its own"));
             }
         },
         (None, Some(name)) => by_name(source, refs, name),
-        (None, None) => return refuse("nothing is chosen"),
+        (None, None) => return refuse(say!("nothing is chosen")),
     };
     if refs.declaration(&found).is_none() {
-        return refuse(format!("there is no {} with this name", kind(&found).trim_start_matches("a ")));
+        return refuse(none_such(&found));
     }
     Ok(found)
 }
@@ -143,17 +143,33 @@ fn renamed(definition: &Definition, to: &str) -> Definition {
     }
 }
 
-fn kind(definition: &Definition) -> &'static str {
+/// A thing of this kind has the name already.
+fn there_already(definition: &Definition, to: &str) -> Said {
     match definition {
-        Definition::Chart(_) => "a chart",
-        Definition::Step { .. } => "a step",
-        Definition::Variable { .. } => "a variable",
-        Definition::Action { .. } => "an action",
-        Definition::Section { .. } => "a section",
-        Definition::Function(_) => "a function",
-        Definition::Transition { .. } => "a label",
-        Definition::Plant(_) => "a plant",
-        Definition::PlantItem { .. } => "a state of the plant",
+        Definition::Chart(_) => say!("there is a chart `{to}` already"),
+        Definition::Step { .. } => say!("there is a step `{to}` already"),
+        Definition::Variable { .. } => say!("there is a variable `{to}` already"),
+        Definition::Action { .. } => say!("there is an action `{to}` already"),
+        Definition::Section { .. } => say!("there is a section `{to}` already"),
+        Definition::Function(_) => say!("there is a function `{to}` already"),
+        Definition::Transition { .. } => say!("there is a label `{to}` already"),
+        Definition::Plant(_) => say!("there is a plant `{to}` already"),
+        Definition::PlantItem { .. } => say!("there is a state of the plant `{to}` already"),
+    }
+}
+
+/// Nothing of this kind has the name.
+fn none_such(definition: &Definition) -> Said {
+    match definition {
+        Definition::Chart(_) => say!("there is no chart with this name"),
+        Definition::Step { .. } => say!("there is no step with this name"),
+        Definition::Variable { .. } => say!("there is no variable with this name"),
+        Definition::Action { .. } => say!("there is no action with this name"),
+        Definition::Section { .. } => say!("there is no section with this name"),
+        Definition::Function(_) => say!("there is no function with this name"),
+        Definition::Transition { .. } => say!("there is no label with this name"),
+        Definition::Plant(_) => say!("there is no plant with this name"),
+        Definition::PlantItem { .. } => say!("there is no state of the plant with this name"),
     }
 }
 
@@ -211,7 +227,7 @@ pub(crate) fn written(text: &str, found: &Use, to: &str) -> Result<Splice, Refus
 fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
     let Definition::Step { name, .. } = &found.definition else { return Ok(old.to_owned()) };
     let number = to.strip_prefix('M').filter(|_| name.starts_with('M')).unwrap_or(to);
-    let no = || Refusal::new(format!("`{old}` names this step, so its name must stay a number"));
+    let no = || Refusal::new(say!("`{old}` names this step, so its name must stay a number"));
     if number.is_empty() || !number.bytes().all(|b| b.is_ascii_digit()) {
         return Err(no());
     }
@@ -245,7 +261,7 @@ fn judge(
     splices: &[Splice],
 ) -> Result<(), Refusal> {
     if let Some(problem) = after.problems.first() {
-        return refuse(format!("this name cannot be written here: {problem}"));
+        return refuse(say!("this name cannot be written here: {}", problem.what));
     }
     let now = references(&after.document);
     let meant = |d: &Definition| if d == definition { new.clone() } else { within(d, definition, new) };
@@ -254,7 +270,7 @@ fn judge(
             b.definition == meant(&a.definition) && shifted(splices, a.at) == b.at.start as usize
         });
     if !same {
-        return refuse(format!(
+        return refuse(say!(
             "with this name something would mean another thing than before: `{}` is in use",
             last_name(new)
         ));

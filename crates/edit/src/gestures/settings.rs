@@ -2,14 +2,14 @@
 
 use std::mem::discriminant;
 
-use g7_model::{Item, Nanos, Place, Profile, ProfileName, Switch};
+use g7_model::{Item, Nanos, Place, Profile, ProfileName, Switch, say};
 
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 
 pub(crate) fn profile(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
     let Some(profile) = ProfileName::ALL.into_iter().find(|p| p.name() == name) else {
-        return refuse(format!("there is no profile `{name}`"));
+        return refuse(say!("there is no profile `{name}`"));
     };
     profile_mut(d, |p, _| p.name = profile);
     Ok(())
@@ -18,7 +18,7 @@ pub(crate) fn profile(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
 /// Writes a switch beside the profile, or removes it so that the profile decides.
 pub(crate) fn switch(d: &mut Draft<'_>, word: &str, on: bool) -> Result<(), Refusal> {
     let Some((_, switch)) = g7_syntax::SWITCHES.into_iter().find(|(name, _)| *name == word) else {
-        return refuse(format!("there is no switch `{word}`"));
+        return refuse(say!("there is no switch `{word}`"));
     };
     let same = |s: &Switch| if on { discriminant(s) == discriminant(&switch) } else { *s == switch };
     change(d, same, on.then_some(switch));
@@ -28,7 +28,7 @@ pub(crate) fn switch(d: &mut Draft<'_>, word: &str, on: bool) -> Result<(), Refu
 /// Sets the greatest number of passes in a scan; without a number the profile decides.
 pub(crate) fn bound(d: &mut Draft<'_>, passes: Option<u32>) -> Result<(), Refusal> {
     if passes == Some(0) {
-        return refuse("a scan needs at least one pass");
+        return refuse(say!("a scan needs at least one pass"));
     }
     change(d, |s| matches!(s, Switch::Bound(_)), passes.map(Switch::Bound));
     Ok(())
@@ -67,7 +67,7 @@ fn profile_mut(d: &mut Draft<'_>, change: impl FnOnce(&mut Profile, Place)) {
 
 pub(crate) fn scan(d: &mut Draft<'_>, ms: f64) -> Result<(), Refusal> {
     if !(ms.is_finite() && ms > 0.0 && ms <= 3_600_000.0) {
-        return refuse("a scan takes more than no time, and at most an hour");
+        return refuse(say!("a scan takes more than no time, and at most an hour"));
     }
     #[allow(clippy::cast_possible_truncation, reason = "bounded just above")]
     let time = Nanos::new(((ms * 1_000_000.0).round() as i64).max(1));

@@ -1,6 +1,6 @@
 //! Charts and variables of the file.
 
-use g7_model::{Chart, ChartItem, ChartKind, FileId, Item, Name, StepKind, VarDecl};
+use g7_model::{Chart, ChartItem, ChartKind, FileId, Item, Name, StepKind, VarDecl, say};
 
 use crate::change::{Refusal, Source, refuse};
 use crate::draft::Draft;
@@ -52,7 +52,7 @@ pub(crate) fn add_chart(d: &mut Draft<'_>, kind: ChartSort, name: Option<&str>) 
     };
     let name = match name.map(str::trim).filter(|n| !n.is_empty()) {
         Some(name) if d.chart(name).is_ok() => {
-            return refuse(format!("there is a chart `{name}` already"));
+            return refuse(say!("there is a chart `{name}` already"));
         }
         Some(name) => name.to_owned(),
         None => d.chart_name(base),
@@ -126,7 +126,7 @@ fn forget(v: &mut VarDecl, name: &str) -> bool {
 pub(crate) fn delete_variable(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
     let (chart, name) = split(d, name);
     if !declarations(d, chart)?.iter().any(|v| declares(v, name)) {
-        return refuse(format!("there is no variable `{name}`"));
+        return refuse(say!("there is no variable `{name}`"));
     }
     match chart {
         Some(chart) => d.chart_mut(chart)?.items.retain_mut(|i| match i {
@@ -166,13 +166,13 @@ pub(crate) fn variable(d: &mut Draft<'_>, name: Option<&str>, row: &Row) -> Resu
     let there = declarations(d, home)?;
     let clash = there.iter().any(|v| declares(v, &row.name)) && old != Some(row.name.as_str());
     if clash {
-        return refuse(format!("there is a variable `{}` already", row.name));
+        return refuse(say!("there is a variable `{}` already", row.name));
     }
     let Some(old) = old else {
         return put_variable(d, home, new);
     };
     let Some(before) = there.into_iter().find(|v| declares(v, old)).cloned() else {
-        return refuse(format!("there is no variable `{old}`"));
+        return refuse(say!("there is no variable `{old}`"));
     };
     if before.names.len() == 1 {
         new.at = before.at;
@@ -236,11 +236,11 @@ pub(crate) fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) 
 /// The declaration that a row describes, with the values as typed.
 fn declared(d: &mut Draft<'_>, row: &Row) -> Result<VarDecl, Refusal> {
     if row.name.trim().is_empty() {
-        return refuse("a variable has a name");
+        return refuse(say!("a variable has a name"));
     }
     let class = if row.class.is_empty() { "var" } else { row.class.as_str() };
     if !["input", "output", "var", "const"].contains(&class) {
-        return refuse(format!("`{class}` is not a class; a variable is input, output, var or const"));
+        return refuse(say!("`{class}` is not a class; a variable is input, output, var or const"));
     }
     let ty = if row.ty.trim().is_empty() { "BOOL" } else { row.ty.trim() };
     let mut line = format!("{class} {} : {ty}", g7_syntax::show_name(row.name.trim()));
@@ -263,12 +263,14 @@ fn declared(d: &mut Draft<'_>, row: &Row) -> Result<VarDecl, Refusal> {
     }
     let (doc, problems) = g7_syntax::parse(&line, FileId(0));
     if let Some(problem) = problems.first() {
-        return refuse(format!("this is not a declaration: {problem}"));
+        return refuse(say!("this is not a declaration: {}", problem.what));
     }
-    let [Item::Var(v)] = doc.items.as_slice() else { return refuse("this is more than one declaration") };
+    let [Item::Var(v)] = doc.items.as_slice() else {
+        return refuse(say!("this is more than one declaration"));
+    };
     let mut v = v.clone();
     if v.names.len() != 1 || v.names.iter().any(|n| *n.text != *row.name.trim()) {
-        return refuse("this is more than one declaration");
+        return refuse(say!("this is more than one declaration"));
     }
     v.at = d.fresh();
     for (e, typed) in [(&mut v.init, &row.init), (&mut v.safe, &row.safe)] {

@@ -1,6 +1,6 @@
 //! A file of `g7 check` with what was found in it.
 
-use g7_model::Problem;
+use g7_model::{Problem, Said};
 use g7_rig::testing::Unproved;
 
 use crate::sources::Source;
@@ -10,5 +10,5 @@ pub(super) struct Checked {
     pub(super) problems: Vec<Problem>,
     pub(super) unproved: Vec<Unproved>,
     /// Why it is no chart; then this is its only problem.
-    pub(super) no_form: Option<String>,
+    pub(super) no_form: Option<Said>,
 }

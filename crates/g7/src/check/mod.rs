@@ -13,29 +13,28 @@ mod watch;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use g7_model::{Item, Place, Problem, Said, Span, codes};
+use g7_model::{Item, Place, Problem, Span, codes, say};
 use serde_json::json;
 
 use crate::cli::{Check, Fixing, Report};
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::progress::Progress;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
+use crate::tongue::language;
 use crate::{files, style};
 use checked::Checked;
 
 pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     if args.fix.is_some() && args.paths.iter().any(|p| p == Path::new("-")) {
-        return Err(Failure::Usage("--fix changes files; the standard input is none".to_owned()));
+        return Err(Failure::Usage(say!("--fix changes files; the standard input is none")));
     }
     if !args.watch {
         return once(args, &files::all(&args.paths)?);
     }
     if args.format != Report::Text || args.paths.iter().any(|p| p == Path::new("-")) {
-        return Err(Failure::Usage(
-            "--watch looks at files, and tells people: no --format, no `-`".to_owned(),
-        ));
+        return Err(Failure::Usage(say!("--watch looks at files, and tells people: no --format, no `-`")));
     }
     watch::for_ever(|| files::all(&args.paths), |paths| once(args, paths))
 }
@@ -75,7 +74,7 @@ fn one(args: &Check, path: &Path) -> Result<Checked, Failure> {
     let source = match sources::load(path, 0) {
         Err(Failure::Form { name, why }) => {
             let source = Source::plain(&name, Vec::new());
-            let problems = vec![Problem::new(&codes::EXPECTED, Span::default(), Said::foreign(why.clone()))];
+            let problems = vec![Problem::new(&codes::EXPECTED, Span::default(), why.clone())];
             return Ok(Checked { source, problems, unproved: Vec::new(), no_form: Some(why) });
         }
         read => read?,
@@ -106,11 +105,12 @@ fn print(out: &mut dyn Write, checked: &Checked) -> Result<(), Failure> {
     if let Some(why) = &checked.no_form {
         writeln!(
             out,
-            "{}error[{}]:{:#} {}: {why}",
+            "{}error[{}]:{:#} {}: {}",
             style::BAD,
             codes::EXPECTED.id,
             style::BAD,
-            checked.source.name
+            checked.source.name,
+            why.in_language(language())
         )?;
         return Ok(());
     }
@@ -148,15 +148,18 @@ fn problems(mut source: Source, args: &Check) -> Result<(Source, Vec<Problem>), 
 }
 
 fn summary(files: usize, tally: Tally, fixable: usize) {
-    let files = if files == 1 { "1 file".to_owned() } else { format!("{files} files") };
-    if tally == Tally::default() {
-        talk!("{}{files}: no problems{:#}", style::GOOD, style::GOOD);
+    let files = if files == 1 { say!("1 file") } else { say!("{files} files") };
+    let line = if tally == Tally::default() {
+        let line = say!("{files}: no problems").in_language(language());
+        format!("{}{line}{:#}", style::GOOD, style::GOOD)
     } else {
         let style = if tally.errors > 0 { style::BAD } else { style::WARN };
-        let fix = match fixable {
-            0 => String::new(),
-            n => format!("; `g7 check --fix` solves {n}"),
+        let tally = raw(format!("{style}{tally}{style:#}"));
+        let line = match fixable {
+            0 => say!("{files}: {tally}; `g7 explain CODE` says more"),
+            n => say!("{files}: {tally}; `g7 explain CODE` says more; `g7 check --fix` solves {n}"),
         };
-        talk!("{files}: {style}{tally}{style:#}; `g7 explain CODE` says more{fix}");
-    }
+        line.in_language(language())
+    };
+    talk!("{line}");
 }

@@ -7,9 +7,9 @@ use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
 use g7_draw::{Look, Options};
-use g7_model::{Chart, FileId};
+use g7_model::{Chart, FileId, say};
 
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::files;
 use crate::message::talk;
 use crate::report::{self, Tally};
@@ -135,8 +135,8 @@ fn picture(
     let charts = charts.iter().copied();
     if form == Form::Drawio {
         if options.pages {
-            let why = "--pages is for pictures; a file of draw.io has a page for each chart";
-            return Err(Failure::Usage(why.to_owned()));
+            let why = say!("--pages is for pictures; a file of draw.io has a page for each chart");
+            return Err(Failure::Usage(why));
         }
         return Ok(g7_draw::drawio(&source.document, charts, options).into_bytes());
     }
@@ -176,10 +176,15 @@ fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure
     if let Some(name) = args.charts.iter().find(|n| !all.iter().any(|c| *c.name.text == ***n)) {
         let names: Vec<&str> = all.iter().map(|c| &*c.name.text).collect();
         let (file, names) = (&source.name, names.join(", "));
-        return Err(Failure::Usage(format!("{file} has no chart {name}; it has {names}")));
+        return Err(Failure::Usage(say!(
+            "{file} has no chart {name}; it has {names}",
+            file = raw(&file),
+            name = raw(&name),
+            names = raw(&names)
+        )));
     }
     if all.is_empty() {
-        return Err(Failure::Usage(format!("{} has no chart to draw", source.name)));
+        return Err(Failure::Usage(say!("{} has no chart to draw", raw(&source.name))));
     }
     let wanted = |c: &&Chart| args.charts.is_empty() || args.charts.iter().any(|n| *c.name.text == **n);
     Ok(all.into_iter().filter(wanted).collect())
@@ -196,7 +201,10 @@ fn form(args: &Draw, output: Option<&Path>) -> Result<Form, Failure> {
         (None, None) => Ok(Form::Svg),
         (None, Some(path)) => Form::of(path).ok_or_else(|| {
             let name = path.display();
-            Failure::Usage(format!("{name} ends in none of .svg, .png, .pdf, .drawio; --as says the form"))
+            Failure::Usage(say!(
+                "{name} ends in none of .svg, .png, .pdf, .drawio; --as says the form",
+                name = raw(&name)
+            ))
         }),
     }
 }
@@ -217,7 +225,11 @@ fn each(
         let path = folder.join(format!("{}.{}", file_name(name), form.ending()));
         if !taken.insert(path.clone()) {
             let path = path.display();
-            return Err(Failure::Usage(format!("two charts would go to {path}; draw {name} alone")));
+            return Err(Failure::Usage(say!(
+                "two charts would go to {path}; draw {name} alone",
+                path = raw(&path),
+                name = raw(&name)
+            )));
         }
         made.push((path, picture(form, source, &[*chart], options, args.scale)?));
     }

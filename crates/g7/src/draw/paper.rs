@@ -6,7 +6,9 @@ use std::sync::Arc;
 use clap::ValueEnum;
 use resvg::{tiny_skia, usvg};
 
-use crate::failure::Failure;
+use g7_model::say;
+
+use crate::failure::{Failure, raw};
 use crate::files;
 
 /// Greatest number of pixels of a PNG: it takes 400 MB of memory.
@@ -58,14 +60,15 @@ fn tree(svg: &str) -> Result<usvg::Tree, Failure> {
         fontdb: Arc::new(fonts),
         ..usvg::Options::default()
     };
-    usvg::Tree::from_str(svg, &options).map_err(|e| Failure::Usage(format!("the picture cannot be set: {e}")))
+    usvg::Tree::from_str(svg, &options)
+        .map_err(|e| Failure::Usage(say!("the picture cannot be set: {e}", e = raw(&e))))
 }
 
 fn png(tree: &usvg::Tree, scale: f32) -> Result<Vec<u8>, Failure> {
     let size = tree.size();
     let (w, h) = ((size.width() * scale).ceil(), (size.height() * scale).ceil());
     let too_large = || {
-        Failure::Usage(format!(
+        Failure::Usage(say!(
             "a PNG of {w} × {h} pixels is too large; a smaller --scale, one --chart, or .svg and .pdf are not"
         ))
     };
@@ -74,7 +77,8 @@ fn png(tree: &usvg::Tree, scale: f32) -> Result<Vec<u8>, Failure> {
     }
     let mut pixels = tiny_skia::Pixmap::new(w as u32, h as u32).ok_or_else(too_large)?;
     resvg::render(tree, tiny_skia::Transform::from_scale(scale, scale), &mut pixels.as_mut());
-    let bytes = pixels.encode_png().map_err(|e| Failure::Usage(format!("the PNG cannot be made: {e}")))?;
+    let bytes =
+        pixels.encode_png().map_err(|e| Failure::Usage(say!("the PNG cannot be made: {e}", e = raw(&e))))?;
     Ok(signed(bytes))
 }
 
@@ -95,5 +99,5 @@ fn signed(png: Vec<u8>) -> Vec<u8> {
 fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, Failure> {
     svg2pdf::to_pdf(tree, svg2pdf::ConversionOptions::default(), svg2pdf::PageOptions::default())
         .map(|bytes| [bytes.as_slice(), files::PDF_MARK].concat())
-        .map_err(|e| Failure::Usage(format!("the PDF cannot be made: {e}")))
+        .map_err(|e| Failure::Usage(say!("the PDF cannot be made: {e}", e = raw(&e))))
 }

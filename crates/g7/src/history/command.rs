@@ -5,12 +5,12 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 use g7_host::{Kind, Recording, Sample};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_store::history::{Overview, Reader, Signal};
 
 use super::rows::{Broken, Csv, Row, Sink, rows};
 use super::time;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::{files, style, values};
 
 #[derive(Args, Debug)]
@@ -69,7 +69,7 @@ fn moment(text: &str) -> Result<Moment, String> {
 /// Executes the command.
 pub(crate) fn history(args: &History) -> Result<Verdict, Failure> {
     let cannot = |e: &dyn std::fmt::Display| {
-        Failure::Usage(format!("cannot read {} as a history: {e}", args.file.display()))
+        Failure::Usage(say!("cannot read {} as a history: {e}", raw(args.file.display()), e = raw(&e)))
     };
     if !args.file.is_file() {
         return Err(Failure::Read(args.file.clone(), io::ErrorKind::NotFound.into()));
@@ -207,7 +207,7 @@ fn chosen(overview: &Overview, names: &[String]) -> Result<Vec<(i64, Signal)>, F
         let before = found.len();
         found.extend(overview.named(name).cloned());
         if found.len() == before {
-            return Err(Failure::Usage(format!(
+            return Err(Failure::Usage(say!(
                 "the record has no signal `{name}`; `g7 history FILE` lists them"
             )));
         }

@@ -6,11 +6,11 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use g7_host::{Clock, WallClock, utc_millis};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_online::{Chosen, Note, Notes, Recorded};
 use g7_store::history::{Limits, Signal, Writer};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 
 /// The pause between two looks at the notes: the ring has room for many times what comes in it.
 const PAUSE: Duration = Duration::from_millis(20);
@@ -45,9 +45,10 @@ pub(crate) fn open(io: &Path, chosen: &Chosen) -> Result<(PathBuf, Writer), Fail
     let age = Nanos::DAY * i64::from(chosen.days);
     let limits = Limits { age, bytes: u64::from(chosen.megabytes) << 20 };
     let writer = Writer::open(&path, limits, Nanos::ZERO, utc()).map_err(|e| {
-        Failure::Usage(format!(
+        Failure::Usage(say!(
             "cannot use {} for [history]: {e}; move it away to begin anew, or name another `file`",
-            path.display()
+            raw(path.display()),
+            e = raw(&e)
         ))
     })?;
     Ok((path, writer))

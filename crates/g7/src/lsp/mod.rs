@@ -21,7 +21,7 @@ mod open;
 mod places;
 mod shows;
 
-use g7_model::Language;
+use g7_model::{Language, say};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{
     DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, Notification as _, PublishDiagnostics,
@@ -35,7 +35,7 @@ use lsp_types::request::{
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use open::Open;
 use shows::Shows;
 
@@ -52,7 +52,7 @@ pub(crate) fn serve(follow: Option<&str>) -> Result<Verdict, Failure> {
 }
 
 fn session(connection: &Connection, follow: Option<&str>) -> Result<(), Failure> {
-    let broken = |e: &dyn std::fmt::Display| Failure::Usage(format!("the editor broke off: {e}"));
+    let broken = |e: &dyn std::fmt::Display| Failure::Usage(say!("the editor broke off: {e}", e = raw(&e)));
     let (id, asked) = connection.initialize_start().map_err(|e| broken(&e))?;
     let hello = serde_json::json!({
         "capabilities": answers::capabilities(),
@@ -95,7 +95,10 @@ fn next(connection: &Connection, open: &mut Open) -> Result<Option<Message>, Fai
 }
 
 fn send(connection: &Connection, message: Message) -> Result<(), Failure> {
-    connection.sender.send(message).map_err(|e| Failure::Usage(format!("the editor broke off: {e}")))
+    connection
+        .sender
+        .send(message)
+        .map_err(|e| Failure::Usage(say!("the editor broke off: {e}", e = raw(&e))))
 }
 
 /// Reads a notification of the editor about its texts. A notification that is not known, or cannot be

@@ -6,11 +6,11 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use g7_host::WallClock;
-use g7_model::{Document, Item, ProfileName, Scenario};
+use g7_model::{Document, Item, ProfileName, Scenario, say};
 use g7_rig::Source;
 use g7_rig::testing::{self, Coverage, Outcome};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::files;
 
 /// The text of a chart with these tests behind it.
@@ -62,7 +62,10 @@ pub(super) fn run(
 pub(super) fn write(path: &Path, source: &Source, tests: &[Scenario]) -> Result<(), Failure> {
     if source.format.is_some() && files::is_same(path, Path::new(&source.name)) {
         let name = path.display();
-        return Err(Failure::Usage(format!("{name} is no .g7 file: name another file for the tests")));
+        return Err(Failure::Usage(say!(
+            "{name} is no .g7 file: name another file for the tests",
+            name = raw(&name)
+        )));
     }
     files::write(path, text(source, tests).as_bytes())
 }

@@ -3,13 +3,13 @@
 
 use std::io::Write;
 
-use g7_model::ProfileName;
+use g7_model::{ProfileName, say};
 use g7_rig::Source;
 use g7_verify::{Budget, Compare, Equality, Unlike, words};
 
 use super::trace::Drawer;
 use crate::cli;
-use crate::failure::{self, Failure};
+use crate::failure::{self, Failure, raw};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::{files, sources, style};
@@ -106,7 +106,7 @@ fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failu
 
 fn unlike(why: &Unlike) -> Failure {
     let [sentence, ..] = words::unlike(why);
-    Failure::Usage(format!("these charts cannot be compared: {sentence}"))
+    Failure::Usage(say!("these charts cannot be compared: {sentence}", sentence = raw(&sentence)))
 }
 
 fn sides(args: &cli::Compare) -> Result<Vec<Side>, Failure> {
@@ -122,6 +122,6 @@ fn sides(args: &cli::Compare) -> Result<Vec<Side>, Failure> {
         ([a, b], []) => Ok(vec![load(a, None)?, load(b, None)?]),
         ([a], [p, q]) => Ok(vec![load(a, Some(*p))?, load(a, Some(*q))?]),
         ([a, b], [p, q]) => Ok(vec![load(a, Some(*p))?, load(b, Some(*q))?]),
-        _ => Err(Failure::Usage("name two files, or one file with --profiles iec60848,unity".to_owned())),
+        _ => Err(Failure::Usage(say!("name two files, or one file with --profiles iec60848,unity"))),
     }
 }

@@ -3,14 +3,14 @@
 
 use std::path::PathBuf;
 
-use g7_model::{Nanos, ProfileName, PropertyKind};
+use g7_model::{Nanos, ProfileName, PropertyKind, say};
 use g7_rig::Source;
 use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck, words};
 
 use super::patience::Patience;
 use super::{added, cover, save, trace};
 use crate::cli::Prove;
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::files;
 use crate::message::talk;
 use crate::style;
@@ -18,9 +18,10 @@ use crate::style;
 /// Refuses the files of several charts, or two files in one place, before anything is searched.
 pub(super) fn one_file(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
     let several = |option: &str| {
-        Failure::Usage(format!(
+        Failure::Usage(say!(
             "{option} takes one chart, and there are {}: name the one you mean",
-            paths.len()
+            paths.len(),
+            option = raw(&option)
         ))
     };
     for (option, file) in [("--save", &args.save), ("--tests", &args.tests)] {
@@ -34,7 +35,7 @@ pub(super) fn one_file(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
     }
     match (&args.save, &args.tests) {
         (Some(a), Some(b)) if a == b => {
-            Err(Failure::Usage("--save and --tests name one file: each writes a file of its own".to_owned()))
+            Err(Failure::Usage(say!("--save and --tests name one file: each writes a file of its own")))
         }
         _ => Ok(()),
     }

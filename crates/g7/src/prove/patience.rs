@@ -10,7 +10,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use g7_host::{Clock, WallClock};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 
 use crate::failure::{Failure, refused};
 
@@ -183,7 +183,7 @@ impl Patience {
                     if let Err(panic) = thread.join() {
                         std::panic::resume_unwind(panic);
                     }
-                    return Err(Failure::Usage("the work ended without a result".to_owned()));
+                    return Err(Failure::Usage(say!("the work ended without a result")));
                 }
             }
             if !stop() {

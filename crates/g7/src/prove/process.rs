@@ -7,36 +7,42 @@ use g7_rig::Source;
 use g7_verify::{Asked, Budget, Expander, Model, Verdict, solve};
 use sha2::{Digest, Sha256};
 
+use g7_model::{Said, say};
+
 use crate::cli::{Answers, Prove, Shared};
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::files;
 use crate::message::talk;
 
 /// Refuses what cannot be shared.
 pub(super) fn refuse(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
     let shared = &args.shared;
-    let usage = |text: &str| Err(Failure::Usage(text.to_owned()));
+    let usage = |text: Said| Err(Failure::Usage(text));
     match args.format.filter(|_| shared.shard.is_some()) {
         Some(Answers::Sarif) => {
-            return usage("--shard prints lines of JSON: a log for code review is one object of all answers");
+            return usage(say!(
+                "--shard prints lines of JSON: a log for code review is one object of all answers"
+            ));
         }
         Some(Answers::Text) => {
-            return usage("--shard prints lines of JSON, which are put together again: leave --format out");
+            return usage(say!(
+                "--shard prints lines of JSON, which are put together again: leave --format out"
+            ));
         }
         Some(Answers::Json) | None => {}
     }
     if !is_shared(shared) {
         return match &shared.keep {
-            Some(_) => usage("--keep is for a search among processes: give --workers or --hosts too"),
+            Some(_) => usage(say!("--keep is for a search among processes: give --workers or --hosts too")),
             None => Ok(()),
         };
     }
     if paths.iter().any(|p| p.as_os_str() == "-") {
-        return usage("processes cannot share the standard input: name a file");
+        return usage(say!("processes cannot share the standard input: name a file"));
     }
     match paths.len() {
         1 => Ok(()),
-        n => Err(Failure::Usage(format!(
+        n => Err(Failure::Usage(say!(
             "processes share the search of one chart, and there are {n}: name the one you mean, or use --shard"
         ))),
     }
@@ -60,22 +66,22 @@ pub(super) fn addresses(shared: &Shared, path: &Path) -> Result<Vec<String>, Fai
     let list = g7_hosts::parse(&path.display().to_string(), &text).map_err(failure)?;
     let count = list.len();
     if let Some(workers) = shared.workers.map(usize::from).filter(|n| *n != count) {
-        return Err(Failure::Usage(format!(
+        return Err(Failure::Usage(say!(
             "--workers {workers}, but {} has {count} hosts: one process for each line",
-            path.display()
+            raw(path.display())
         )));
     }
     match shared.process {
-        Some(me) if me >= count => Err(Failure::Usage(format!(
+        Some(me) if me >= count => Err(Failure::Usage(say!(
             "--process {me}, but {} has {count} hosts: the first one is process 0",
-            path.display()
+            raw(path.display())
         ))),
         _ => Ok(list),
     }
 }
 
 pub(super) fn failure(error: g7_hosts::Error) -> Failure {
-    Failure::Usage(error.to_string())
+    Failure::Usage(raw(error))
 }
 
 /// A folder of its own, which goes with its owner.
@@ -92,7 +98,7 @@ impl Temporary {
                 Err(e) => return Err(Failure::Write(path, e)),
             }
         }
-        Err(Failure::Usage(format!("no folder can be made in {}", base.display())))
+        Err(Failure::Usage(say!("no folder can be made in {}", raw(base.display()))))
     }
 }
 

@@ -5,9 +5,11 @@ use std::net::TcpListener;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
+use g7_model::say;
+
 use super::process::{Temporary, addresses};
 use crate::cli::Prove;
-use crate::failure::{Failure, Verdict, plain};
+use crate::failure::{Failure, Verdict, plain, raw};
 use crate::files;
 use crate::message::talk;
 
@@ -37,10 +39,9 @@ pub(super) fn run(args: &Prove, stop: &dyn Fn() -> bool) -> Result<Verdict, Fail
             workers.into()
         }
         _ => {
-            return Err(Failure::Usage(
+            return Err(Failure::Usage(say!(
                 "--hosts needs --process with the number of this machine's line, or --workers to start all here"
-                    .to_owned(),
-            ));
+            )));
         }
     };
     if shared.keep.is_none() {
@@ -97,7 +98,7 @@ impl Workers {
                     Some(0) => Verdict::Fine,
                     Some(1) => Verdict::Found,
                     Some(3) => Verdict::Open,
-                    Some(2) => return Err(Failure::Usage(format!("process {number} could not go on"))),
+                    Some(2) => return Err(Failure::Usage(say!("process {number} could not go on"))),
                     _ if self.starts.get(number).is_some_and(|n| *n <= AGAIN) && !stop() => {
                         talk!("process {number} has ended ({status}); it is started again");
                         let child = self.start(number)?;
@@ -107,7 +108,10 @@ impl Workers {
                         continue;
                     }
                     _ => {
-                        return Err(Failure::Usage(format!("process {number} has ended ({status})")));
+                        return Err(Failure::Usage(say!(
+                            "process {number} has ended ({status})",
+                            status = raw(&status)
+                        )));
                     }
                 };
                 if number == 0 {
@@ -117,7 +121,7 @@ impl Workers {
             }
             std::thread::sleep(PAUSE);
         }
-        verdict.ok_or_else(|| Failure::Usage("process 0 gave no answers".to_owned()))
+        verdict.ok_or_else(|| Failure::Usage(say!("process 0 gave no answers")))
     }
 }
 

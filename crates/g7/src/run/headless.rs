@@ -12,12 +12,12 @@ use super::keep::{self, Keeper};
 use super::outside::{self, Outside};
 use crate::cli::Run;
 use crate::ended::Ended;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::progress::Progress;
 use crate::sources::Source;
 use crate::{files, style, values};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_rig::{Bench, Conflicts, Item, Role};
 
 /// The length of a run if none is given.
@@ -38,9 +38,9 @@ fn form(path: &Path) -> Result<Form, Failure> {
     match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
         Some("csv") => Ok(Form::Csv),
         Some("vcd") => Ok(Form::Vcd),
-        _ => Err(Failure::Usage(format!(
+        _ => Err(Failure::Usage(say!(
             "cannot tell the form of {} by its name: end it in .csv or .vcd",
-            path.display()
+            raw(path.display())
         ))),
     }
 }
@@ -102,10 +102,10 @@ fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(Nanos, &'b Item, Valu
     let mut script = Vec::new();
     for assign in &args.set {
         let Some(item) = bench.item(&assign.name) else {
-            return Err(Failure::Usage(format!("--set: {}", bench.unknown(&assign.name))));
+            return Err(Failure::Usage(say!("--set: {}", raw(bench.unknown(&assign.name)))));
         };
         let value = values::read(&assign.value, item.kind)
-            .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;
+            .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name), e = raw(&e))))?;
         script.push((assign.at, item, value));
     }
     script.sort_by_key(|(at, ..)| *at);
@@ -117,7 +117,7 @@ fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
     let find = |name: &String| {
         signals.iter().position(|s| s.name == *name).ok_or_else(|| {
             let near = bench.suggestions(name);
-            Failure::Usage(format!("--show: there is no `{name}`{near}"))
+            Failure::Usage(say!("--show: there is no `{name}`{near}", near = raw(&near)))
         })
     };
     args.show.iter().map(find).collect()
@@ -265,10 +265,13 @@ fn inputs(bench: &Bench) -> u64 {
 /// Replays a record and compares every state.
 pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, Failure> {
     let text = String::from_utf8(files::read(path)?).unwrap_or_default();
-    let tape = Tape::from_text(&text).map_err(|e| Failure::Usage(format!("{} {e}", path.display())))?;
+    let tape = Tape::from_text(&text)
+        .map_err(|e| Failure::Usage(say!("{} {e}", raw(path.display()), e = raw(&e))))?;
     if tape.of() != inputs(bench) {
-        let what = "is a record of another chart: its inputs have other names or types";
-        return Err(Failure::Usage(format!("{} {what}", path.display())));
+        return Err(Failure::Usage(say!(
+            "{} is a record of another chart: its inputs have other names or types",
+            raw(path.display())
+        )));
     }
     let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
     let mut recording = Recording::new(bench.signals());

@@ -4,9 +4,9 @@ use std::path::Path;
 
 use g7_host::{Clock, Layout, RetainError, Retained, Runner, Start, WallClock};
 
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use g7_rig::Bench;
 
 fn layout(bench: &Bench) -> Layout {
@@ -25,7 +25,11 @@ pub(super) fn load(bench: &Bench, runner: &mut Runner, path: Option<&Path>) -> R
             Ok(())
         }
         Err(RetainError::Io(e)) => Err(Failure::Read(path.to_path_buf(), e)),
-        Err(e) => Err(Failure::Usage(format!("cannot use {}: {e}; remove it to start cold", path.display()))),
+        Err(e) => Err(Failure::Usage(say!(
+            "cannot use {}: {e}; remove it to start cold",
+            raw(path.display()),
+            e = raw(&e)
+        ))),
     }
 }
 

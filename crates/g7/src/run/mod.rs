@@ -9,6 +9,8 @@ use std::path::Path;
 
 pub(crate) use keep::Keeper;
 
+use g7_model::say;
+
 use crate::attendant::Attendant;
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
@@ -23,7 +25,7 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let source = sources::load(&path, 0)?;
     if args.drive.online {
         if outside::is_fmu(args.plant.as_deref()) {
-            return Err(Failure::Usage("an FMU is a plant of runs without --online".to_owned()));
+            return Err(Failure::Usage(say!("an FMU is a plant of runs without --online")));
         }
         return online(&path, source, args);
     }
@@ -35,7 +37,7 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     files::refuse_source(args.retain.as_deref(), &[&path])?;
     let is_fmu = outside::is_fmu(args.plant.as_deref());
     if !is_fmu && !args.wire.is_empty() {
-        return Err(Failure::Usage("--wire is for a plant that is an FMU: --plant FILE.fmu".to_owned()));
+        return Err(Failure::Usage(say!("--wire is for a plant that is an FMU: --plant FILE.fmu")));
     }
     let plant = if is_fmu { Some("none") } else { args.plant.as_deref() };
     let options = Options { profile: args.profile, scan: args.scan, plant, asks: &[] };

@@ -6,10 +6,10 @@ use g7_fmi::archive;
 use g7_fmi::description::{Causality, Description, Type, Variable, Version};
 use g7_fmi::library::{Instance, Value as Foreign};
 use g7_host::{Kind, Runner, Value};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_rig::{Bench, Item, Role};
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::files;
 use crate::message::talk;
 use crate::scratch::Scratch;
@@ -35,7 +35,7 @@ pub(crate) fn is_fmu(plant: Option<&str>) -> bool {
 impl Outside {
     /// Unpacks and loads an FMU and connects it: `wires` first, then what has the same name on both sides.
     pub(super) fn open(path: &Path, bench: &Bench, wires: &[(String, String)]) -> Result<Outside, Failure> {
-        let bad = |what: String| Failure::Usage(format!("{}: {what}", path.display()));
+        let bad = |what: String| Failure::Usage(say!("{}: {what}", raw(path.display()), what = raw(&what)));
         let all = archive::unpack(&files::read(path)?).map_err(bad)?;
         let text = all.iter().find(|(name, _)| name == "modelDescription.xml");
         let text = text.ok_or_else(|| bad("it has no modelDescription.xml".to_owned()))?;
@@ -68,7 +68,9 @@ impl Outside {
     /// Goes on to the instant of the next scan, and brings its outputs to the charts.
     pub(super) fn step(&mut self, bench: &Bench, runner: &mut Runner) -> Result<(), Failure> {
         let now = runner.due();
-        let at = |what: String| Failure::Usage(format!("{} at {}: {what}", self.name, now.plain()));
+        let at = |what: String| {
+            Failure::Usage(say!("{} at {}: {what}", raw(&self.name), raw(now.plain()), what = raw(&what)))
+        };
         if self.reached.is_none() {
             self.instance.begin().map_err(at)?;
         }

@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use axum::http::StatusCode;
 use g7_host::utc_millis;
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_store::users::{Role, SessionHash, UserError, Users, session_hash};
 use serde_json::json;
 use tokio::sync::{Semaphore, watch};
@@ -28,7 +28,7 @@ use super::aside::aside;
 use super::refusal::Refusal;
 use super::throttle::Throttle;
 use crate::audit::Audit;
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::who::Who;
 
 /// Passwords that are checked at the same time: each takes 19 MiB.
@@ -113,8 +113,9 @@ pub(super) fn refusal(error: UserError) -> Refusal {
 impl Access {
     /// Opens the file of the users.
     pub(super) fn open(path: &Path, lasts: Lasts, audit: Audit) -> Result<Access, Failure> {
-        let failed =
-            |e: UserError| Failure::Usage(format!("cannot use {} as the users: {e}", path.display()));
+        let failed = |e: UserError| {
+            Failure::Usage(say!("cannot use {} as the users: {e}", raw(path.display()), e = raw(&e)))
+        };
         let users = Users::open(path).map_err(failed)?;
         let code = if users.has_admin().map_err(failed)? {
             None

@@ -62,11 +62,12 @@ use std::time::Duration;
 
 use axum::Router;
 use axum::routing::get;
+use g7_model::say;
 use tokio::net::TcpListener;
 use tokio::runtime::Runtime;
 
 use crate::attendant::Attendant;
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::operator::{Order, Stage};
 use crate::station::{self, More, Settings, Station};
@@ -102,9 +103,12 @@ fn shared(
         (true, Some(parent), Some(name)) => {
             let parent = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
             let name = name.to_string_lossy().into_owned();
-            file_names::path(&name).map_err(Failure::Usage)?;
+            file_names::path(&name).map_err(|why| Failure::Usage(raw(why)))?;
             if file_names::is_io(&name) {
-                return Err(Failure::Usage(format!("{name} belongs to a chart: serve that one")));
+                return Err(Failure::Usage(say!(
+                    "{name} belongs to a chart: serve that one",
+                    name = raw(&name)
+                )));
             }
             (parent.to_path_buf(), Some(name))
         }
@@ -114,7 +118,7 @@ fn shared(
     let chart = folder.root().join("chart.g7").is_file().then(|| "chart.g7".to_owned());
     let start = args.start.clone().or(first).or(chart);
     if let Some(start) = &start {
-        folder.read(start).map_err(|r| Failure::Usage(r.text))?;
+        folder.read(start).map_err(|r| Failure::Usage(raw(r.text)))?;
     }
     let page = args.page_dir.as_ref().map(|p| p.canonicalize().map_err(|e| Failure::Read(p.clone(), e)));
     Ok(Arc::new(Inner {
@@ -175,7 +179,7 @@ async fn tell_changes(shared: Shared) {
 fn token() -> Result<String, Failure> {
     let mut bytes = [0u8; 24];
     getrandom::fill(&mut bytes)
-        .map_err(|e| Failure::Usage(format!("the system gives no random numbers: {e}")))?;
+        .map_err(|e| Failure::Usage(say!("the system gives no random numbers: {e}", e = raw(&e))))?;
     Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
@@ -191,7 +195,12 @@ async fn bind(host: IpAddr, port: Option<u16>) -> Result<TcpListener, Failure> {
     };
     bound.map_err(|e| {
         let port = port.unwrap_or(PORT);
-        Failure::Usage(format!("cannot listen at {host} port {port}: {}", crate::failure::plain(&e)))
+        Failure::Usage(say!(
+            "cannot listen at {host} port {port}: {}",
+            crate::failure::plain(&e),
+            host = raw(&host),
+            port = raw(&port)
+        ))
     })
 }
 
@@ -223,7 +232,8 @@ impl Open {
             threads.on_thread_start(system::step_back);
         }
         let runtime = threads.enable_all().worker_threads(2).build();
-        let runtime = runtime.map_err(|e| Failure::Usage(format!("the server cannot start: {e}")))?;
+        let runtime =
+            runtime.map_err(|e| Failure::Usage(say!("the server cannot start: {e}", e = raw(&e))))?;
         let listener = runtime.block_on(bind(rules.host, rules.port))?;
         let bound = listener.local_addr()?;
         let (pass, token) = match &rules.access {

@@ -9,6 +9,8 @@ use std::sync::Arc;
 
 use g7_online::setup::Server;
 
+use g7_model::say;
+
 use super::access::{Access, Lasts};
 use super::args::Serve;
 use super::guard::{Foreign, Guard, Pass};
@@ -16,7 +18,7 @@ use super::listen::Door;
 use super::shared::Limits;
 use super::tls::{Certificate, Files};
 use crate::audit::Audit;
-use crate::failure::{Failure, unlogged};
+use crate::failure::{Failure, raw, unlogged};
 
 /// The rules of a server from its start on.
 #[derive(Clone, Debug)]
@@ -116,7 +118,7 @@ fn frames(address: &str) -> Result<String, Failure> {
     let signs = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | ':' | '[' | ']');
     match host {
         Some(host) if !host.is_empty() && host.chars().all(signs) => Ok(format!("{EDITORS} {address}")),
-        _ => Err(Failure::Usage(format!(
+        _ => Err(Failure::Usage(say!(
             "`{address}` is no address of a page without a path, such as http://127.0.0.1:8080"
         ))),
     }
@@ -126,20 +128,24 @@ fn frames(address: &str) -> Result<String, Failure> {
 fn reachable(host: IpAddr, encrypted: bool, users: bool) -> Result<(), Failure> {
     let what = match (host.is_loopback(), encrypted, users) {
         (true, _, false) | (_, true, true) => return Ok(()),
-        (true, false, true) => "users log in over encrypted connections alone".to_owned(),
-        (false, false, true) => format!("{host} is reached from other machines, and nothing is encrypted"),
-        (false, true, false) => format!("{host} is reached from other machines, and there are no users"),
+        (true, false, true) => say!("users log in over encrypted connections alone"),
+        (false, false, true) => {
+            say!("{} is reached from other machines, and nothing is encrypted", raw(host))
+        }
+        (false, true, false) => say!("{} is reached from other machines, and there are no users", raw(host)),
         (false, false, false) => {
-            format!("{host} is reached from other machines, without encryption and without users")
+            say!("{} is reached from other machines, without encryption and without users", raw(host))
         }
     };
-    let mut ways = Vec::new();
-    if !encrypted {
-        ways.push("`g7 cert` makes a certificate for --cert and --key");
-    }
-    if !users {
-        ways.push("--users names the file of the users");
-    }
-    let tunnel = if host.is_loopback() { "" } else { "; or stay at 127.0.0.1 and come by `ssh -L`" };
-    Err(Failure::Usage(format!("{what}: {}{tunnel}", ways.join(", "))))
+    let way = match (encrypted, users) {
+        (false, false) => {
+            say!("`g7 cert` makes a certificate for --cert and --key, --users names the file of the users")
+        }
+        (false, true) => say!("`g7 cert` makes a certificate for --cert and --key"),
+        (true, _) => say!("--users names the file of the users"),
+    };
+    Err(Failure::Usage(match host.is_loopback() {
+        true => say!("{what}: {way}"),
+        false => say!("{what}: {way}; or stay at 127.0.0.1 and come by `ssh -L`"),
+    }))
 }

@@ -17,7 +17,9 @@ use tokio_rustls::rustls::sign::CertifiedKey;
 use tokio_rustls::rustls::{self, ServerConfig};
 use webpki::EndEntityCert;
 
-use crate::failure::{Failure, plain};
+use g7_model::say;
+
+use crate::failure::{Failure, plain, raw};
 use crate::message::talk;
 
 const DAY: u64 = 86_400;
@@ -58,7 +60,7 @@ impl ResolvesServerCert for Certificate {
 impl Certificate {
     /// Reads a certificate and its key.
     pub(super) fn open(files: Files) -> Result<Arc<Certificate>, Failure> {
-        let right = read(&files, utc_millis() / 1_000).map_err(Failure::Usage)?;
+        let right = read(&files, utc_millis() / 1_000).map_err(|why| Failure::Usage(raw(why)))?;
         warn(&files, &right);
         let seen = Mutex::new(times(&files));
         Ok(Arc::new(Certificate { files, now: Mutex::new(right), seen }))
@@ -66,7 +68,7 @@ impl Certificate {
 
     /// The acceptor that takes connections with it.
     pub(super) fn acceptor(self: &Arc<Certificate>) -> Result<TlsAcceptor, Failure> {
-        let wrong = |e: rustls::Error| Failure::Usage(format!("no TLS: {e}"));
+        let wrong = |e: rustls::Error| Failure::Usage(say!("no TLS: {e}", e = raw(&e)));
         let config = ServerConfig::builder_with_provider(Arc::new(ring::default_provider()));
         let config = config.with_safe_default_protocol_versions().map_err(wrong)?;
         let resolver: Arc<dyn ResolvesServerCert> = Arc::clone(self) as _;

@@ -14,7 +14,9 @@ use std::process::Command as Program;
 use clap::{Args, Subcommand};
 use g7_online::setup::Kind;
 
-use crate::failure::{Failure, Verdict, plain};
+use g7_model::say;
+
+use crate::failure::{Failure, Verdict, plain, raw};
 use crate::message::talk;
 use crate::wiring::{self, Plan, Wanted};
 use crate::{files, sources, style};
@@ -107,7 +109,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
         Some(name) => name.clone(),
         None => format!("g7-{}", called(&path)),
     };
-    unit::check_name(&name).map_err(Failure::Usage)?;
+    unit::check_name(&name).map_err(|why| Failure::Usage(raw(why)))?;
     let binary = std::env::current_exe().map_err(|e| Failure::Read(PathBuf::from("g7"), e))?;
     let unit = Unit {
         binary: &binary,
@@ -124,7 +126,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
             || plan.setup.server.port.as_ref().is_some_and(|port| (1..1024).contains(&port.value)),
         realtime: plan.setup.controller.priority.is_some(),
     };
-    let text = unit.text().map_err(Failure::Usage)?;
+    let text = unit.text().map_err(|why| Failure::Usage(raw(why)))?;
     if args.print {
         files::deliver(None, text.as_bytes())?;
         return Ok(Verdict::Fine);
@@ -140,11 +142,11 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
 }
 
 fn remove(args: &Remove) -> Result<Verdict, Failure> {
-    unit::check_name(&args.name).map_err(Failure::Usage)?;
+    unit::check_name(&args.name).map_err(|why| Failure::Usage(raw(why)))?;
     let file = folder(args.user)?.join(format!("{}.service", args.name));
     let text = std::fs::read(&file).map_err(|e| Failure::Read(file.clone(), e))?;
     if !unit::is_ours(&text) {
-        return Err(Failure::Usage(format!("{} was not written by g7: it is left alone", file.display())));
+        return Err(Failure::Usage(say!("{} was not written by g7: it is left alone", raw(file.display()))));
     }
     systemctl(args.user, &["disable", "--now", &args.name])?;
     std::fs::remove_file(&file).map_err(|e| Failure::Write(file.clone(), e))?;
@@ -197,7 +199,7 @@ fn folder(user: bool) -> Result<PathBuf, Failure> {
         .or_else(|| std::env::var_os("HOME").map(|home| Path::new(&home).join(".config")));
     config
         .map(|config| config.join("systemd/user"))
-        .ok_or_else(|| Failure::Usage("neither XDG_CONFIG_HOME nor HOME is set".to_owned()))
+        .ok_or_else(|| Failure::Usage(say!("neither XDG_CONFIG_HOME nor HOME is set")))
 }
 
 fn systemctl(user: bool, arguments: &[&str]) -> Result<(), Failure> {
@@ -207,12 +209,12 @@ fn systemctl(user: bool, arguments: &[&str]) -> Result<(), Failure> {
     }
     let line = format!("systemctl {}{}", if user { "--user " } else { "" }, arguments.join(" "));
     let done = program.args(arguments).output();
-    let done = done.map_err(|e| Failure::Usage(format!("`{line}` cannot be started: {}", plain(&e))))?;
+    let done = done.map_err(|e| Failure::Usage(say!("`{line}` cannot be started: {}", plain(&e))))?;
     if done.status.success() {
         return Ok(());
     }
     let why = String::from_utf8_lossy(&done.stderr);
-    Err(Failure::Usage(format!("`{line}` failed: {}", why.trim())))
+    Err(Failure::Usage(say!("`{line}` failed: {}", raw(why.trim()))))
 }
 
 /// True if the controller writes files beside its io file.

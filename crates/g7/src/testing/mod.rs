@@ -7,10 +7,13 @@ pub(crate) use output::escape;
 
 use std::io::Write;
 
+use g7_model::say;
+
 use crate::cli::{Format, Test};
 use crate::failure::{Failure, Verdict};
 use crate::message::talk;
 use crate::progress::Progress;
+use crate::tongue::language;
 use crate::{files, report};
 use output::Results;
 
@@ -63,8 +66,13 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
     Ok(if none || failed || !results.broken.is_empty() { Verdict::Found } else { Verdict::Fine })
 }
 
-fn nothing(args: &Test) -> &'static str {
-    if args.filter.is_some() { "no test has that in its title" } else { "there are no tests" }
+fn nothing(args: &Test) -> String {
+    let what = if args.filter.is_some() {
+        say!("no test has that in its title")
+    } else {
+        say!("there are no tests")
+    };
+    what.in_language(language())
 }
 
 /// Lists the tests without running them.

@@ -2,9 +2,10 @@
 
 use std::io::{self, Write};
 
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use serde_json::{Value, json};
 
+use crate::tongue::language;
 use crate::{report, style};
 use g7_rig::testing::{Coverage, Defect, Outcome, Unproved};
 
@@ -70,20 +71,17 @@ impl Results {
 /// Prints the closing line.
 pub(super) fn summary(out: &mut dyn Write, results: &Results) -> io::Result<()> {
     let failed = results.failed();
-    write!(out, "\n{} passed, {failed} failed", results.outcomes.len() - failed)?;
-    match results.broken.len() {
-        0 => {}
-        1 => write!(out, ", 1 file with errors")?,
-        n => write!(out, ", {n} files with errors")?,
-    }
-    match results.not_run {
-        0 => {}
-        n => write!(out, ", {n} not run")?,
-    }
-    match results.unproved.len() {
-        0 => writeln!(out),
-        n => writeln!(out, ", {n} left to g7 prove"),
-    }
+    let passed = results.outcomes.len() - failed;
+    let broken = match results.broken.len() {
+        0 => None,
+        1 => Some(say!("1 file with errors")),
+        n => Some(say!("{n} files with errors")),
+    };
+    let not_run = (results.not_run > 0).then(|| say!("{} not run", results.not_run));
+    let left = (!results.unproved.is_empty()).then(|| say!("{} left to g7 prove", results.unproved.len()));
+    let parts = [Some(say!("{passed} passed, {failed} failed")), broken, not_run, left];
+    let parts: Vec<String> = parts.into_iter().flatten().map(|part| part.in_language(language())).collect();
+    writeln!(out, "\n{}", parts.join(", "))
 }
 
 /// Prints the coverage of each kind of element, and every element that was not reached.

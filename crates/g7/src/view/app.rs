@@ -3,9 +3,9 @@
 use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock};
 
 use crate::cli::Run;
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
 use crate::values::{self, Assign};
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 use g7_rig::{Bench, Conflicts, Item, Role, Table};
 
 /// The keys for inputs: those that no command uses.
@@ -96,10 +96,10 @@ impl<'b> App<'b> {
         script.sort_by_key(|a| std::cmp::Reverse(a.at));
         for assign in &script {
             let Some(item) = bench.item(&assign.name) else {
-                return Err(Failure::Usage(format!("--set: {}", bench.unknown(&assign.name))));
+                return Err(Failure::Usage(say!("--set: {}", raw(bench.unknown(&assign.name)))));
             };
             values::read(&assign.value, item.kind)
-                .map_err(|e| Failure::Usage(format!("--set {}: {e}", assign.name)))?;
+                .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name), e = raw(&e))))?;
         }
         Ok(App {
             bench,

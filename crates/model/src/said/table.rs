@@ -22,6 +22,10 @@ const TABLES: &[&str] = &[
     include_str!("tests.txt"),
     include_str!("iec.txt"),
     include_str!("exchange.txt"),
+    include_str!("online.txt"),
+    include_str!("codegen.txt"),
+    include_str!("edit.txt"),
+    include_str!("g7.txt"),
 ];
 #[cfg(target_arch = "wasm32")]
 const TABLES: &[&str] = &[];

@@ -262,7 +262,7 @@ fn options(opening: &Opening<'_>) -> Result<MqttOptions, Failed> {
         options.set_last_will(LastWill::new(will.topic.as_str(), payload, quality, will.retain, None));
     }
     if let Some(tls) = &broker.tls {
-        let config = tls::config(tls.files()).map_err(|(_, why)| Failed(why))?;
+        let config = tls::config(tls.files()).map_err(|(_, why)| Failed(why.to_string()))?;
         options.set_transport(Transport::Tls(TlsConfiguration::Rustls(config)));
     }
     Ok(options)

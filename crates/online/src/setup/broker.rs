@@ -1,6 +1,6 @@
 //! The row of an MQTT broker, and what channels say about their messages.
 
-use g7_model::{Nanos, Span};
+use g7_model::{Nanos, Said, Span, say};
 
 use super::secret::{self, Held, Tls};
 use super::table::{At, Found, Table};
@@ -103,25 +103,25 @@ pub(super) fn read(name: &str, table: &mut Table<'_>, found: &mut Found) -> Opti
     let user = table.text(found, "user");
     let password = secret::password(table, found);
     if let (Some(password), None) = (&password, &user) {
-        found.wrong(password.from.at, "a password without a `user`").help =
-            Some(g7_model::Said::foreign("name the `user` that the broker knows".to_owned()));
+        found.wrong(password.from.at, say!("a password without a `user`")).help =
+            Some(say!("name the `user` that the broker knows"));
     }
     let client_id = table.text(found, "client-id");
     if let Some(long) = client_id.as_ref().filter(|id| id.value.is_empty() || id.value.len() > 65_535) {
-        found.wrong(long.at, "a `client-id` has 1 to 65535 bytes");
+        found.wrong(long.at, say!("a `client-id` has 1 to 65535 bytes"));
     }
     let keep_alive = table.duration(found, "keep-alive", Nanos::SECOND, Nanos::HOUR);
     let keep_alive = keep_alive.map_or(Nanos::SECOND * 10, |time| time.value);
     let status = status(table, found);
     let sparkplug = table.table(found, "sparkplug").and_then(|table| sparkplug(table, found));
     if let (Some(status), true) = (&status, sparkplug.is_some()) {
-        found.wrong(status.at, "an edge node of Sparkplug has no `status`").help =
-            Some(g7_model::Said::foreign("its births and deaths say whether it is there".to_owned()));
+        found.wrong(status.at, say!("an edge node of Sparkplug has no `status`")).help =
+            Some(say!("its births and deaths say whether it is there"));
     }
     let events = events(name, table, found);
     if let (Some(events), true) = (&events, sparkplug.is_some()) {
-        found.wrong(events.topic.at, "an edge node of Sparkplug publishes metrics, no events").help =
-            Some(g7_model::Said::foreign("declare the broker a second time, without `sparkplug`".to_owned()));
+        found.wrong(events.topic.at, say!("an edge node of Sparkplug publishes metrics, no events")).help =
+            Some(say!("declare the broker a second time, without `sparkplug`"));
     }
     let host = table.needed(found, "host", "10.0.0.7")?;
     Some(Broker {
@@ -164,24 +164,24 @@ fn events(name: &str, table: &mut Table<'_>, found: &mut Found) -> Option<Events
     if let Some(text) = value.value.as_str() {
         topic = Some(At::new(text.to_owned(), value.at));
     } else if let Some(rows) = value.value.as_table() {
-        let mut table = Table::new(rows, value.at, "`events`");
+        let mut table = Table::new(rows, value.at, Said::foreign("`events`"));
         topic = table.needed(found, "topic", "plant/sorter/events");
         file = table.text(found, "file");
         most = table.whole(found, "most", 100..=10_000_000);
         bytes = table.whole(found, "bytes", 100_000..=1 << 40);
         table.end(found);
     } else {
-        found.wrong(value.at, "`events` is the text of a topic, or a table").help =
-            Some(g7_model::Said::foreign("write `events = \"plant/sorter/events\"`".to_owned()));
+        found.wrong(value.at, say!("`events` is the text of a topic, or a table")).help =
+            Some(say!("write `events = \"plant/sorter/events\"`"));
     }
     let topic = own_topic(topic?, found)?;
     let usual = || At::new(format!("{name}.events"), value.at);
     let file = file.unwrap_or_else(usual);
     if file.value.is_empty() || file.value.contains(['/', '\\', '\0']) {
-        found.wrong(file.at, "the `file` of the events is the name of a file beside the io file").help =
-            Some(g7_model::Said::foreign(
-                "write `events = { topic = \"plant/sorter/events\", file = \"sorter.events\" }`".to_owned(),
-            ));
+        found
+            .wrong(file.at, say!("the `file` of the events is the name of a file beside the io file"))
+            .help =
+            Some(say!("write `events = {{ topic = \"plant/sorter/events\", file = \"sorter.events\" }}`"));
         return None;
     }
     let number = |n: Option<At<i64>>, usual: i64| n.map_or(usual, |n| n.value).unsigned_abs();
@@ -194,7 +194,7 @@ fn sparkplug(mut table: Table<'_>, found: &mut Found) -> Option<Sparkplug> {
     let device = table.text(found, "device");
     for name in [&group, &node, &device].into_iter().flatten() {
         if name.value.is_empty() || name.value.contains(['+', '/', '#', '\0']) {
-            let what = "a name of Sparkplug has at least one character, and no `+`, `/` or `#`";
+            let what = say!("a name of Sparkplug has at least one character, and no `+`, `/` or `#`");
             found.wrong(name.at, what);
         }
     }
@@ -203,20 +203,20 @@ fn sparkplug(mut table: Table<'_>, found: &mut Found) -> Option<Sparkplug> {
 }
 
 /// Refuses what is no name of a topic (MQTT 5.0, 4.7).
-pub(super) fn topic_name(topic: &str) -> Result<(), String> {
+pub(super) fn topic_name(topic: &str) -> Result<(), Said> {
     if topic.is_empty() || topic.len() > 65_535 || topic.contains('\0') {
-        return Err("the name of a topic has 1 to 65535 bytes".to_owned());
+        return Err(say!("the name of a topic has 1 to 65535 bytes"));
     }
     if topic.contains(['+', '#']) {
-        return Err(format!("`{topic}` has a wildcard; a point has one topic"));
+        return Err(say!("`{topic}` has a wildcard; a point has one topic"));
     }
     Ok(())
 }
 
 /// Refuses topics that belong to the broker (MQTT 5.0, 4.7.2).
-pub(crate) fn publishable(topic: &str) -> Result<(), String> {
+pub(crate) fn publishable(topic: &str) -> Result<(), Said> {
     if topic.starts_with('$') {
-        return Err(format!("`{topic}` belongs to the broker: nothing is published there"));
+        return Err(say!("`{topic}` belongs to the broker: nothing is published there"));
     }
     Ok(())
 }

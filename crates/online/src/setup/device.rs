@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 
-use g7_model::Nanos;
+use g7_model::{Nanos, Said, say};
 
 use super::broker::{self, Broker};
 use super::field::{self, S7};
@@ -187,11 +187,11 @@ impl Default for Timing {
 pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
     let name = At::new(row.name.to_owned(), row.at);
     let Some(table) = row.value.as_table() else {
-        found.wrong(row.value_at, format!("the device {} is a table", row.name)).help =
-            Some(g7_model::Said::foreign(format!("begin it by a line `[devices.{}]`", row.name)));
+        found.wrong(row.value_at, say!("the device {} is a table", Said::foreign(row.name))).help =
+            Some(say!("begin it by a line `[devices.{}]`", row.name));
         return None;
     };
-    let mut table = Table::new(table, row.at, format!("the device {}", row.name));
+    let mut table = Table::new(table, row.at, say!("the device {}", Said::foreign(row.name)));
     let kind = table.needed(found, "kind", "modbus-tcp")?;
     let kind = match kind.value.as_str() {
         "modbus-tcp" => tcp(&mut table, found).map(|tcp| Kind::ModbusTcp(tcp, modbus(&mut table, found))),
@@ -209,8 +209,9 @@ pub(super) fn read(row: &Row<'_>, found: &mut Found) -> Option<Device> {
         "panel" => Some(Kind::Panel(panel::read(&mut table, found))),
         _ => {
             let known: Vec<String> = Kind::WORDS.iter().map(|word| format!("\"{word}\"")).collect();
-            found.wrong(kind.at, format!("no kind of device is called \"{}\"", kind.value)).help =
-                Some(g7_model::Said::foreign(format!("the kinds are {}", known.join(", "))));
+            found
+                .wrong(kind.at, say!("no kind of device is called \"{}\"", Said::foreign(kind.value)))
+                .help = Some(say!("the kinds are {}", Said::foreign(known.join(", "))));
             return None;
         }
     };
@@ -272,18 +273,18 @@ fn listen(table: &mut Table<'_>, found: &mut Found) -> Option<Listen> {
     let low_word_first = low_word_first(table, found);
     let address = address?;
     let Ok(parsed) = address.value.parse::<SocketAddr>() else {
-        found.wrong(address.at, "`listen` is an address of this machine with a port").help =
-            Some(g7_model::Said::foreign(
-                "write `listen = \"127.0.0.1:1502\"`, or \"0.0.0.0:502\" for all of its addresses".to_owned(),
-            ));
+        found.wrong(address.at, say!("`listen` is an address of this machine with a port")).help =
+            Some(say!("write `listen = \"127.0.0.1:1502\"`, or \"0.0.0.0:502\" for all of its addresses"));
         return None;
     };
     if !parsed.ip().is_loopback() && !open.is_some_and(|open| open.value) {
         found
-            .wrong(address.at, "Modbus has no users and no keys: whoever reaches this address may write")
-            .help = Some(g7_model::Said::foreign(
-            "listen at 127.0.0.1, or say `access = \"anyone\"` where the network is closed".to_owned(),
-        ));
+            .wrong(
+                address.at,
+                say!("Modbus has no users and no keys: whoever reaches this address may write"),
+            )
+            .help =
+            Some(say!("listen at 127.0.0.1, or say `access = \"anyone\"` where the network is closed"));
         return None;
     }
     Some(Listen {
@@ -322,14 +323,9 @@ pub(super) fn one_line_each(devices: &[Device], found: &mut Found) {
     for (k, (device, serial)) in lines.clone().enumerate() {
         let other = lines.clone().take(k).find(|(_, s)| s.port == serial.port && *s != serial);
         if let Some((first, _)) = other {
-            let what = format!(
-                "{} and {} set the serial port {} otherwise",
-                first.name.value, device.name.value, serial.port
-            );
-            found
-                .wrong(device.name.at, what)
-                .related
-                .push((first.name.at, g7_model::Said::foreign("this is the other one".to_owned())));
+            let [one, other, port] = [&first.name.value, &device.name.value, &serial.port].map(Said::foreign);
+            let what = say!("{one} and {other} set the serial port {port} otherwise");
+            found.wrong(device.name.at, what).related.push((first.name.at, say!("this is the other one")));
         }
     }
 }
@@ -344,9 +340,9 @@ pub(super) fn one_file_each(devices: &[Device], retain: Option<&At<String>>, fou
         let others = retain.into_iter().chain(events.clone().take(k));
         if let Some(first) = others.into_iter().find(|other| other.value == file.value) {
             found
-                .wrong(file.at, format!("`{}` would hold two things", file.value))
+                .wrong(file.at, say!("`{}` would hold two things", file.value))
                 .related
-                .push((first.at, g7_model::Said::foreign("this is the other one".to_owned())));
+                .push((first.at, say!("this is the other one")));
         }
     }
 }
@@ -356,12 +352,10 @@ pub(super) fn one_address_each(devices: &[Device], found: &mut Found) {
     let servers = devices.iter().filter_map(|d| d.kind.listens().map(|address| (d, address)));
     for (k, (device, address)) in servers.clone().enumerate() {
         if let Some((first, _)) = servers.clone().take(k).find(|(_, other)| *other == address) {
-            let what =
-                format!("{} and {} listen at one address, {address}", first.name.value, device.name.value);
-            found
-                .wrong(device.name.at, what)
-                .related
-                .push((first.name.at, g7_model::Said::foreign("this is the other one".to_owned())));
+            let [one, other] = [&first.name.value, &device.name.value].map(Said::foreign);
+            let address = Said::foreign(address.to_string());
+            let what = say!("{one} and {other} listen at one address, {address}");
+            found.wrong(device.name.at, what).related.push((first.name.at, say!("this is the other one")));
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Controllers of Siemens and lines of this machine: their rows, their points, and what channels say
 //! about them.
 
-use g7_model::{Nanos, Span};
+use g7_model::{Nanos, Said, Span, say};
 
 use super::table::{At, Found, Table};
 
@@ -148,13 +148,13 @@ pub(super) fn chip(table: &mut Table<'_>, found: &mut Found) -> Option<String> {
 /// # Errors
 ///
 /// The text begins like one, and this is wrong with it.
-pub(super) fn address(text: &str) -> Option<Result<Address, String>> {
+pub(super) fn address(text: &str) -> Option<Result<Address, Said>> {
     let upper = text.trim().to_ascii_uppercase();
     let (memory, rest) = if let Some(block) = upper.strip_prefix("DB") {
         let (number, rest) = block.split_once('.')?;
         match whole(number, 65_535).filter(|number| *number > 0) {
             Some(number) => (Memory::Block(number), rest.strip_prefix("DB")?),
-            None => return Some(Err("a data block has a number from 1 to 65535".to_owned())),
+            None => return Some(Err(say!("a data block has a number from 1 to 65535"))),
         }
     } else {
         let memory = match upper.as_bytes().first()? {
@@ -178,13 +178,14 @@ pub(super) fn address(text: &str) -> Option<Result<Address, String>> {
     Some(placed(memory, width, rest))
 }
 
-fn placed(memory: Memory, width: Option<Width>, rest: &str) -> Result<Address, String> {
-    let number = |byte: &str| whole(byte, 65_535).ok_or("a byte has a number from 0 to 65535");
+fn placed(memory: Memory, width: Option<Width>, rest: &str) -> Result<Address, Said> {
+    let number = |byte: &str| whole(byte, 65_535).ok_or_else(|| say!("a byte has a number from 0 to 65535"));
     match width {
         Some(width) => Ok(Address { memory, byte: number(rest)?, width }),
         None => {
-            let (byte, bit) = rest.split_once('.').ok_or("a bit is written with its byte: `M0.7`")?;
-            let bit = whole(bit, 7).ok_or("a bit of a byte is 0 to 7")?;
+            let (byte, bit) =
+                rest.split_once('.').ok_or_else(|| say!("a bit is written with its byte: `M0.7`"))?;
+            let bit = whole(bit, 7).ok_or_else(|| say!("a bit of a byte is 0 to 7"))?;
             Ok(Address { memory, byte: number(byte)?, width: Width::Bit(bit as u8) })
         }
     }

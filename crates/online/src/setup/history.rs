@@ -9,6 +9,7 @@
 //! deadband = { level = 0.5 }
 //! ```
 
+use g7_model::say;
 use toml::de::DeValue;
 
 use super::table::{self, At, Found, Table};
@@ -46,7 +47,7 @@ pub(super) fn history(mut table: Table<'_>, found: &mut Found) -> Option<History
         match table::number(row.value).filter(|band| *band > 0.0) {
             Some(band) => deadband.push((At::new(row.name.to_owned(), row.at), band)),
             None => {
-                found.wrong(row.value_at, format!("the deadband of `{}` is a number above 0", row.name));
+                found.wrong(row.value_at, say!("the deadband of `{}` is a number above 0", row.name));
             }
         }
     }
@@ -62,8 +63,8 @@ fn signals(table: &mut Table<'_>, found: &mut Found) -> Option<Option<Vec<At<Str
         DeValue::String(word) if word == "all" => return Some(None),
         DeValue::Array(names) => names,
         _ => {
-            found.wrong(value.at, "`signals` of [history] is \"all\", or a list of names").help =
-                Some(g7_model::Said::foreign("write `signals = [\"start\", \"X3\"]`".to_owned()));
+            found.wrong(value.at, say!("`signals` of [history] is \"all\", or a list of names")).help =
+                Some(say!("write `signals = [\"start\", \"X3\"]`"));
             return None;
         }
     };
@@ -73,13 +74,13 @@ fn signals(table: &mut Table<'_>, found: &mut Found) -> Option<Option<Vec<At<Str
         match name.get_ref().as_str() {
             Some(text) => read.push(At::new(text.to_owned(), at)),
             None => {
-                found.wrong(at, "a signal is a name in quotes");
+                found.wrong(at, say!("a signal is a name in quotes"));
             }
         }
     }
     if read.is_empty() {
-        found.wrong(value.at, "a history without signals records nothing").help =
-            Some(g7_model::Said::foreign("name some, or leave `signals` out for all".to_owned()));
+        found.wrong(value.at, say!("a history without signals records nothing")).help =
+            Some(say!("name some, or leave `signals` out for all"));
         return None;
     }
     Some(Some(read))

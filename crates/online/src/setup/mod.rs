@@ -36,7 +36,7 @@ mod table;
 use std::net::SocketAddr;
 use std::path::Path;
 
-use g7_model::{FileId, Nanos, Problem, Span};
+use g7_model::{FileId, Nanos, Problem, Said, Span, say};
 use toml::de::{DeTable, DeValue};
 
 pub(crate) use broker::publishable;
@@ -178,13 +178,13 @@ pub struct Channel {
 pub fn read(text: &str, file: FileId) -> (Setup, Vec<Problem>) {
     let mut found = Found { file, problems: Vec::new() };
     if text.len() > MOST {
-        found.wrong(Span { file, start: 0, end: 0 }, format!("an io file has at most {MOST} bytes"));
+        found.wrong(Span { file, start: 0, end: 0 }, say!("an io file has at most {MOST} bytes"));
         return (Setup::default(), found.problems);
     }
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in errors {
         let at = found.span(error.span().unwrap_or(0..0));
-        found.wrong(at, error.message().to_owned());
+        found.wrong(at, Said::foreign(error.message()));
     }
     let setup = setup(table.get_ref(), &mut found);
     (setup, found.problems)
@@ -195,13 +195,13 @@ pub fn read(text: &str, file: FileId) -> (Setup, Vec<Problem>) {
 /// # Errors
 ///
 /// A sentence that says what is wrong with it.
-pub fn read_point(text: &str) -> Result<Point, String> {
+pub fn read_point(text: &str) -> Result<Point, Said> {
     point::of(text)
 }
 
 /// Gets the passwords, certificates and keys that the file names. `from` gives the bytes of a file or
 /// variable, or says why not.
-pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, String>) -> Vec<Problem> {
+pub fn read_secrets(setup: &mut Setup, from: impl FnMut(&Origin) -> Result<Vec<u8>, Said>) -> Vec<Problem> {
     let peers = setup.devices.iter_mut().filter_map(|device| match &mut device.kind {
         Kind::Mqtt(broker) => Some((broker.password.as_mut(), broker.tls.as_mut())),
         Kind::OpcUa(server) => Some((server.password(), None)),
@@ -223,7 +223,7 @@ pub fn settle(setup: &mut Setup, folder: &Path) {
 
 fn setup(table: &DeTable<'_>, found: &mut Found) -> Setup {
     let top = Span { file: found.file, start: 0, end: 0 };
-    let mut top = Table::new(table, top, "an io file");
+    let mut top = Table::new(table, top, say!("an io file"));
     let controller = top.table(found, "controller").map(|table| controller(table, found));
     let server = top.table(found, "server").map(|table| server::server(table, found)).unwrap_or_default();
     let rows = top.rows(found, "devices");
@@ -271,10 +271,9 @@ fn metrics(table: &mut Table<'_>, found: &mut Found) -> Option<At<SocketAddr>> {
     match text.value.parse::<SocketAddr>() {
         Ok(address) if address.ip().is_loopback() => Some(At::new(address, text.at)),
         Ok(_) | Err(_) => {
-            found.wrong(text.at, "`metrics` is an address of this machine alone, with a port").help =
-                Some(g7_model::Said::foreign(
+            found.wrong(text.at, say!("`metrics` is an address of this machine alone, with a port")).help =
+                Some(say!(
                     "write `metrics = \"127.0.0.1:9464\"`; from elsewhere, ask through an agent or a tunnel"
-                        .to_owned(),
                 ));
             None
         }
@@ -305,11 +304,11 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
         });
     }
     let Some(table) = row.value.as_table() else {
-        found.wrong(row.value_at, format!("`{}` is wired to a text or a table", row.name)).help =
-            Some(g7_model::Said::foreign(format!("write `{} = \"device.point\"`", row.name)));
+        found.wrong(row.value_at, say!("`{}` is wired to a text or a table", row.name)).help =
+            Some(say!("write `{} = \"device.point\"`", row.name));
         return None;
     };
-    let mut table = Table::new(table, row.at, format!("the channel {}", row.name));
+    let mut table = Table::new(table, row.at, say!("the channel {}", Said::foreign(row.name)));
     let text = table.needed(found, "at", "device.point");
     let encoding = table.word(found, "as", Encoding::WORDS);
     let (scale, offset) = (table.number(found, "scale"), table.number(found, "offset"));
@@ -323,7 +322,7 @@ fn channel(row: &Row<'_>, input: bool, found: &mut Found) -> Option<Channel> {
         Some(bad) => At::new(substitute(bad.value, bad.at, found)?, bad.at),
     };
     if let Some(scale) = scale.as_ref().filter(|s| s.value == 0.0) {
-        found.wrong(scale.at, "a scale is not 0");
+        found.wrong(scale.at, say!("a scale is not 0"));
         return None;
     }
     table.end(found);
@@ -357,7 +356,7 @@ fn substitute(value: &DeValue<'_>, at: Span, found: &mut Found) -> Option<Bad> {
         Some("hold") => Some(Bad::Hold),
         Some("fault") => Some(Bad::Fault),
         _ => {
-            found.wrong(at, "`bad` is \"hold\", \"fault\", or the value that the input takes");
+            found.wrong(at, say!("`bad` is \"hold\", \"fault\", or the value that the input takes"));
             None
         }
     }

@@ -3,7 +3,7 @@
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 
-use g7_model::Nanos;
+use g7_model::{Nanos, Said, say};
 
 use super::secret::{self, Held};
 use super::table::{Found, Table};
@@ -111,7 +111,7 @@ pub(super) fn client(table: &mut Table<'_>, found: &mut Found) -> Option<OpcUa> 
     let security = table.word(found, "security", Security::WORDS);
     let policy = table.word(found, "policy", Policy::WORDS);
     if let (Some(policy), Some(Security::None)) = (&policy, security.as_ref().map(|s| s.value)) {
-        found.wrong(policy.at, "without security there is no policy");
+        found.wrong(policy.at, say!("without security there is no policy"));
     }
     let user = user(table, found);
     let certificates = certificates(table, found, CERTIFICATES.to_owned());
@@ -121,8 +121,7 @@ pub(super) fn client(table: &mut Table<'_>, found: &mut Found) -> Option<OpcUa> 
     let uncertain = table.word(found, "uncertain", &[("bad", false), ("good", true)]);
     let url = table.needed(found, "url", "opc.tcp://10.0.0.7:4840")?;
     if let Err(why) = address(&url.value) {
-        found.wrong(url.at, why).help =
-            Some(g7_model::Said::foreign("write `url = \"opc.tcp://10.0.0.7:4840\"`".to_owned()));
+        found.wrong(url.at, why).help = Some(say!("write `url = \"opc.tcp://10.0.0.7:4840\"`"));
         return None;
     }
     Some(OpcUa {
@@ -143,13 +142,12 @@ fn user(table: &mut Table<'_>, found: &mut Found) -> Option<(String, Held)> {
     let password = secret::password(table, found);
     match (&user, &password) {
         (None, Some(password)) => {
-            found.wrong(password.from.at, "a password without a `user`").help =
-                Some(g7_model::Said::foreign("name the `user` that the server knows".to_owned()));
+            found.wrong(password.from.at, say!("a password without a `user`")).help =
+                Some(say!("name the `user` that the server knows"));
         }
         (Some(user), None) => {
-            found.wrong(user.at, "a user without a password").help = Some(g7_model::Said::foreign(
-                "name its file: `password-file = \"line1.password\"`".to_owned(),
-            ));
+            found.wrong(user.at, say!("a user without a password")).help =
+                Some(say!("name its file: `password-file = \"line1.password\"`"));
         }
         (None, None) | (Some(_), Some(_)) => {}
     }
@@ -157,21 +155,21 @@ fn user(table: &mut Table<'_>, found: &mut Found) -> Option<(String, Held)> {
 }
 
 /// Refuses what is no address of OPC UA over TCP (OPC 10000-6, 7.2).
-fn address(url: &str) -> Result<(), String> {
+fn address(url: &str) -> Result<(), Said> {
     let rest =
-        url.strip_prefix("opc.tcp://").ok_or_else(|| format!("`{url}` does not begin with `opc.tcp://`"))?;
+        url.strip_prefix("opc.tcp://").ok_or_else(|| say!("`{url}` does not begin with `opc.tcp://`"))?;
     let host = rest.split('/').next().unwrap_or("");
     let (name, port) = match host.rsplit_once(':') {
         Some((name, port)) if !port.contains(']') => (name, Some(port)),
         _ => (host, None),
     };
     if name.is_empty() || url.contains(char::is_whitespace) {
-        return Err(format!("`{url}` has no name of a host"));
+        return Err(say!("`{url}` has no name of a host"));
     }
     match port.map(str::parse::<u16>) {
         None => Ok(()),
         Some(Ok(port)) if port > 0 => Ok(()),
-        Some(_) => Err(format!("the port of `{url}` is no number from 1 to 65535")),
+        Some(_) => Err(say!("the port of `{url}` is no number from 1 to 65535")),
     }
 }
 
@@ -190,11 +188,8 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     let silence = table.duration(found, "silence", Nanos::SECOND, Nanos::HOUR);
     let address = address?;
     let Ok(parsed) = address.value.parse::<SocketAddr>() else {
-        found.wrong(address.at, "`listen` is an address of this machine with a port").help =
-            Some(g7_model::Said::foreign(
-                "write `listen = \"127.0.0.1:4840\"`, or \"0.0.0.0:4840\" for all of its addresses"
-                    .to_owned(),
-            ));
+        found.wrong(address.at, say!("`listen` is an address of this machine with a port")).help =
+            Some(say!("write `listen = \"127.0.0.1:4840\"`, or \"0.0.0.0:4840\" for all of its addresses"));
         return None;
     };
     let server = OpcUaServer {
@@ -207,9 +202,8 @@ pub(super) fn server(name: &str, table: &mut Table<'_>, found: &mut Found) -> Op
     };
     let others = !parsed.ip().is_loopback();
     if let Some(none) = security.filter(|s| others && s.value == Security::None) {
-        let what = "without security whoever reaches this address reads along and writes";
-        found.wrong(none.at, what).help =
-            Some(g7_model::Said::foreign("leave `security` out, or listen at 127.0.0.1".to_owned()));
+        let what = say!("without security whoever reaches this address reads along and writes");
+        found.wrong(none.at, what).help = Some(say!("leave `security` out, or listen at 127.0.0.1"));
         return None;
     }
     Some(server)
@@ -248,18 +242,20 @@ impl std::fmt::Display for NodeId {
 /// # Errors
 ///
 /// A sentence that says what is wrong with it.
-pub fn read_node(text: &str) -> Result<NodeId, String> {
-    let wrong = |why: &str| Err(format!("`{text}` is no node: {why}"));
+pub fn read_node(text: &str) -> Result<NodeId, Said> {
+    let wrong = |why: Said| Err(say!("`{text}` is no node: {why}"));
     let (namespace, identifier) = if let Some(rest) = text.strip_prefix("ns=") {
-        let Some((index, rest)) = rest.split_once(';') else { return wrong("`;` follows the namespace") };
+        let Some((index, rest)) = rest.split_once(';') else {
+            return wrong(say!("`;` follows the namespace"));
+        };
         match index.parse() {
             Ok(index) => (Namespace::Index(index), rest),
-            Err(_) => return wrong("`ns=` is a number from 0 to 65535; a name begins with `nsu=`"),
+            Err(_) => return wrong(say!("`ns=` is a number from 0 to 65535; a name begins with `nsu=`")),
         }
     } else if let Some(rest) = text.strip_prefix("nsu=") {
         match rest.split_once(';') {
             Some((uri, rest)) if !uri.is_empty() => (Namespace::Uri(uri.to_owned()), rest),
-            _ => return wrong("a name and `;` follow `nsu=`"),
+            _ => return wrong(say!("a name and `;` follow `nsu=`")),
         }
     } else {
         (Namespace::Index(0), text)
@@ -269,10 +265,14 @@ pub fn read_node(text: &str) -> Result<NodeId, String> {
         Some(("s", name)) => !name.is_empty() && name.len() <= 4096 && !name.contains(['\n', '\r']),
         Some(("g", guid)) => is_guid(guid),
         Some(("b", bytes)) => is_base64(bytes),
-        _ => return wrong("it has a number (`i=85`), a name (`s=Tank`), a GUID (`g=`) or base64 (`b=`)"),
+        _ => {
+            return wrong(say!(
+                "it has a number (`i=85`), a name (`s=Tank`), a GUID (`g=`) or base64 (`b=`)"
+            ));
+        }
     };
     if !fits {
-        return wrong(&format!("`{identifier}` has not the form that its letter asks for"));
+        return wrong(say!("`{identifier}` has not the form that its letter asks for"));
     }
     Ok(NodeId { namespace, identifier: identifier.to_owned() })
 }

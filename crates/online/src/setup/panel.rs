@@ -1,6 +1,6 @@
 //! The row of a panel, and its points: what a person finds on the operator page.
 
-use g7_model::{Nanos, Span};
+use g7_model::{Nanos, Said, Span, say};
 
 use super::catalogue::LAMPS;
 use super::table::{At, Found, Table};
@@ -98,21 +98,21 @@ pub(super) fn limits(table: &mut Table<'_>, found: &mut Found) -> Limits {
         && min.value > max.value
     {
         found
-            .wrong(max.at, "the greatest number is less than the least")
+            .wrong(max.at, say!("the greatest number is less than the least"))
             .related
-            .push((min.at, g7_model::Said::foreign("this is the least".to_owned())));
+            .push((min.at, say!("this is the least")));
     }
     let within = |x: f64| {
         min.as_ref().is_none_or(|least| x >= least.value) && max.as_ref().is_none_or(|most| x <= most.value)
     };
     if let Some(initial) = initial.as_ref().filter(|x| !within(x.value)) {
-        found.wrong(initial.at, "`initial` is not within `min` and `max`");
+        found.wrong(initial.at, say!("`initial` is not within `min` and `max`"));
     }
     Limits { min, max, initial }
 }
 
 /// Reads a part of a panel; `None` where no part is called so.
-pub(super) fn handle(word: &str, argument: &str) -> Option<Result<Handle, String>> {
+pub(super) fn handle(word: &str, argument: &str) -> Option<Result<Handle, Said>> {
     let plain = match word {
         "button" => Handle::Button,
         "switch" => Handle::Switch,
@@ -123,28 +123,28 @@ pub(super) fn handle(word: &str, argument: &str) -> Option<Result<Handle, String
         "lamp" => return Some(lamp(argument)),
         _ => return None,
     };
-    Some(if argument.is_empty() { Ok(plain) } else { Err(format!("`{word}()` has no argument")) })
+    Some(if argument.is_empty() { Ok(plain) } else { Err(say!("`{word}()` has no argument")) })
 }
 
-fn choice(argument: &str) -> Result<Handle, String> {
+fn choice(argument: &str) -> Result<Handle, Said> {
     /// The greatest number of words that a person can look through.
     const MOST: usize = 32;
     let words: Vec<String> = argument.split(',').map(|word| word.trim().to_owned()).collect();
     if words.len() < 2 || words.len() > MOST || words.iter().any(String::is_empty) {
-        return Err(format!("a choice is among 2 to {MOST} words: `choice(A1, F1, F4)`"));
+        return Err(say!("a choice is among 2 to {MOST} words: `choice(A1, F1, F4)`"));
     }
     let twice = words.iter().enumerate().find(|(k, word)| words.iter().take(*k).any(|w| w == *word));
     match twice {
-        Some((_, word)) => Err(format!("the choice has `{word}` twice")),
+        Some((_, word)) => Err(say!("the choice has `{word}` twice")),
         None => Ok(Handle::Choice(words)),
     }
 }
 
-fn lamp(argument: &str) -> Result<Handle, String> {
+fn lamp(argument: &str) -> Result<Handle, Said> {
     let colour = match argument {
         "" => LAMPS.first(),
         colour => LAMPS.iter().find(|known| **known == colour),
     };
-    let colour = colour.ok_or_else(|| format!("a lamp is {}", LAMPS.join(", ")))?;
+    let colour = colour.ok_or_else(|| say!("a lamp is {}", Said::foreign(LAMPS.join(", "))))?;
     Ok(Handle::Lamp(colour))
 }

@@ -1,6 +1,6 @@
 //! Points of devices as the io file writes them: `line1.coil(2)`.
 
-use g7_model::Span;
+use g7_model::{Said, Span, say};
 
 use super::broker::topic_name;
 use super::field::{self, Address, whole};
@@ -162,12 +162,11 @@ pub(super) fn read(text: &str, at: Span, found: &mut Found) -> Option<(At<String
     match read {
         Ok((device, point)) => Some((At::new(device.to_owned(), at), point)),
         Err(why) => {
-            let what = why.unwrap_or_else(|| format!("\"{text}\" is no point of a device"));
-            found.wrong(at, what).help = Some(g7_model::Said::foreign(
+            let what = why.unwrap_or_else(|| say!("\"{}\" is no point of a device", Said::foreign(text)));
+            found.wrong(at, what).help = Some(say!(
                 "write the device and its point: \"line1.coil(2)\", \"line1.holding(4)\", \
                  \"line1.holding(4.3)\" for one bit, \"broker.topic(plant/level)\", \"plc.DB1.DBX0.0\", \
                  \"board.line(17)\", \"desk.button()\", \"plc.node(ns=2;s=Level)\", \"line1.good()\""
-                    .to_owned(),
             ));
             None
         }
@@ -187,7 +186,7 @@ pub(super) fn renamed(text: &str, from: &str, to: &str) -> Option<String> {
 }
 
 /// `device.DB1.DBX0.0`: the device, and the address or what is wrong with it.
-fn addressed(text: &str) -> Option<(&str, Result<Address, String>)> {
+fn addressed(text: &str) -> Option<(&str, Result<Address, Said>)> {
     let (device, address) = text.trim().split_once('.')?;
     field::address(address).map(|address| (device.trim(), address))
 }
@@ -205,26 +204,23 @@ fn called(text: &str) -> Option<(&str, &str)> {
 }
 
 /// Reads `point(arguments)`.
-pub(super) fn of(text: &str) -> Result<Point, String> {
+pub(super) fn of(text: &str) -> Result<Point, Said> {
     if let Some(address) = field::address(text) {
         return address.map(Point::S7);
     }
-    let (word, argument) = called(text).ok_or_else(|| format!("`{text}` is no point: write `holding(4)`"))?;
+    let (word, argument) = called(text).ok_or_else(|| say!("`{text}` is no point: write `holding(4)`"))?;
     point(word, argument)
 }
 
-fn point(word: &str, argument: &str) -> Result<Point, String> {
+fn point(word: &str, argument: &str) -> Result<Point, Said> {
     if word == "good" {
-        return if argument.is_empty() {
-            Ok(Point::Good)
-        } else {
-            Err("`good()` has no argument".to_owned())
-        };
+        return if argument.is_empty() { Ok(Point::Good) } else { Err(say!("`good()` has no argument")) };
     }
     match word {
         "topic" => return topic_name(argument).map(|()| Point::Topic(argument.to_owned())),
         "line" => {
-            let offset = whole(argument, 65_535).ok_or("a line has a number from 0 to 65535")?;
+            let offset =
+                whole(argument, 65_535).ok_or_else(|| say!("a line has a number from 0 to 65535"))?;
             return Ok(Point::Line(u32::from(offset)));
         }
         "metric" => return Ok(Point::Metric(Some(argument.to_owned()).filter(|name| !name.is_empty()))),
@@ -235,16 +231,19 @@ fn point(word: &str, argument: &str) -> Result<Point, String> {
         return handle.map(Point::Panel);
     }
     let Some((_, area)) = Area::WORDS.iter().find(|(name, _)| *name == word) else {
-        return Err(format!("no point is called `{word}`"));
+        return Err(say!("no point is called `{word}`"));
     };
     let (address, bit) = match argument.split_once('.') {
         Some((address, bit)) => (address, Some(bit)),
         None => (argument, None),
     };
-    let address = whole(address, 65_535).ok_or("an address is a whole number from 0 to 65535")?;
+    let address =
+        whole(address, 65_535).ok_or_else(|| say!("an address is a whole number from 0 to 65535"))?;
     let bit = match bit {
-        Some(_) if area.is_bits() => return Err(format!("{word}({address}) is one bit already")),
-        Some(bit) => Some(whole(bit, 15).ok_or("a bit of a register is 0 to 15")? as u8),
+        Some(_) if area.is_bits() => {
+            return Err(say!("{} is one bit already", Said::foreign(format!("{word}({address})"))));
+        }
+        Some(bit) => Some(whole(bit, 15).ok_or_else(|| say!("a bit of a register is 0 to 15"))? as u8),
         None => None,
     };
     Ok(Point::Modbus(Register { area: *area, address, bit }))

@@ -1,7 +1,7 @@
 //! Passwords, certificates and keys: an io file names them and does not hold them; they are in files beside
 //! it or in variables of the environment.
 
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Said, Span, codes, say};
 
 use super::table::{At, Found, Table};
 use crate::tls::{self, Files, Part};
@@ -85,9 +85,9 @@ pub(super) fn password(table: &mut Table<'_>, found: &mut Found) -> Option<Held>
     let variable = variable.map(|v| Held::new(At::new(Origin::Variable(v.value), v.at)));
     if let (Some(file), Some(variable)) = (&file, &variable) {
         found
-            .wrong(variable.from.at, "there are two passwords")
+            .wrong(variable.from.at, say!("there are two passwords"))
             .related
-            .push((file.from.at, g7_model::Said::foreign("this is the other one".to_owned())));
+            .push((file.from.at, say!("this is the other one")));
     }
     file.or(variable)
 }
@@ -100,11 +100,11 @@ pub(super) fn tls(table: &mut Table<'_>, found: &mut Found) -> Option<Tls> {
         return on.then_some(Tls { at, ca: None, identity: None });
     }
     let Some(rows) = value.value.as_table() else {
-        found.wrong(at, "`tls` is true, or a table with the files of the certificates").help =
-            Some(g7_model::Said::foreign("write `tls = true` or `tls = { ca = \"ca.pem\" }`".to_owned()));
+        found.wrong(at, say!("`tls` is true, or a table with the files of the certificates")).help =
+            Some(say!("write `tls = true` or `tls = {{ ca = \"ca.pem\" }}`"));
         return None;
     };
-    let mut table = Table::new(rows, at, "`tls`");
+    let mut table = Table::new(rows, at, Said::foreign("`tls`"));
     let ca = Held::file(&mut table, found, "ca");
     let certificate = Held::file(&mut table, found, "certificate");
     let key = Held::file(&mut table, found, "key");
@@ -112,7 +112,7 @@ pub(super) fn tls(table: &mut Table<'_>, found: &mut Found) -> Option<Tls> {
         (Some(certificate), Some(key)) => Some((certificate, key)),
         (None, None) => None,
         (Some(one), None) | (None, Some(one)) => {
-            found.wrong(one.from.at, "`certificate` and `key` of a client belong together");
+            found.wrong(one.from.at, say!("`certificate` and `key` of a client belong together"));
             None
         }
     };
@@ -126,12 +126,10 @@ pub(super) type Wanted<'d> = (Option<&'d mut Held>, Option<&'d mut Tls>);
 /// Gets what peers have in files and variables. `read` gives the bytes, or says why not.
 pub(super) fn read<'d>(
     peers: impl Iterator<Item = Wanted<'d>>,
-    mut read: impl FnMut(&Origin) -> Result<Vec<u8>, String>,
+    mut read: impl FnMut(&Origin) -> Result<Vec<u8>, Said>,
 ) -> Vec<Problem> {
     let mut problems = Vec::new();
-    let mut wrong = |at: Span, what: String| {
-        problems.push(Problem::new(&codes::BAD_WIRING, at, g7_model::Said::foreign(what)))
-    };
+    let mut wrong = |at: Span, what: Said| problems.push(Problem::new(&codes::BAD_WIRING, at, what));
     for (password, tls) in peers {
         if let Some(password) = password {
             match read(&password.from.value) {
@@ -142,7 +140,7 @@ pub(super) fn read<'d>(
                     }
                     password.secret = Secret(bytes);
                 }
-                Err(why) => wrong(password.from.at, format!("the password cannot be read: {why}")),
+                Err(why) => wrong(password.from.at, say!("the password cannot be read: {why}")),
             }
         }
         let Some(tls) = tls else { continue };
@@ -152,7 +150,7 @@ pub(super) fn read<'d>(
                 Ok(bytes) => held.secret = Secret(bytes),
                 Err(why) => {
                     complete = false;
-                    wrong(held.from.at, format!("the file cannot be read: {why}"));
+                    wrong(held.from.at, say!("the file cannot be read: {why}"));
                 }
             }
         }

@@ -3,7 +3,7 @@
 
 use std::net::IpAddr;
 
-use g7_model::Nanos;
+use g7_model::{Nanos, say};
 
 use super::device::{Device, Kind};
 use super::table::{At, Found, Table};
@@ -50,12 +50,12 @@ pub(super) fn server(mut table: Table<'_>, found: &mut Found) -> Server {
     };
     match (&read.cert, &read.key) {
         (Some(only), None) => {
-            found.wrong(only.at, "[server] has a `cert` and no `key`").help =
-                Some(g7_model::Said::foreign("name the file with its private key as `key`".to_owned()));
+            found.wrong(only.at, say!("[server] has a `cert` and no `key`")).help =
+                Some(say!("name the file with its private key as `key`"));
         }
         (None, Some(only)) => {
-            found.wrong(only.at, "[server] has a `key` and no `cert`").help =
-                Some(g7_model::Said::foreign("name the file with its certificate as `cert`".to_owned()));
+            found.wrong(only.at, say!("[server] has a `key` and no `cert`")).help =
+                Some(say!("name the file with its certificate as `cert`"));
         }
         (Some(_), Some(_)) | (None, None) => {}
     }
@@ -67,10 +67,9 @@ pub(super) fn server(mut table: Table<'_>, found: &mut Found) -> Server {
 pub(super) fn encrypted(server: &Server, devices: &[Device], found: &mut Found) {
     let elsewhere = devices.iter().any(|device| matches!(device.kind, Kind::OpcUaServer(_)));
     if let (Some(users), None, false) = (&server.users, &server.cert, elsewhere) {
-        found.wrong(users.at, "passwords go over encrypted connections alone, and there is no `cert`").help =
-            Some(g7_model::Said::foreign(
-                "`g7 cert` makes a certificate and its key; name them as `cert` and `key`".to_owned(),
-            ));
+        found
+            .wrong(users.at, say!("passwords go over encrypted connections alone, and there is no `cert`"))
+            .help = Some(say!("`g7 cert` makes a certificate and its key; name them as `cert` and `key`"));
     }
 }
 
@@ -79,8 +78,8 @@ fn host(table: &mut Table<'_>, found: &mut Found) -> Option<At<IpAddr>> {
     match text.value.parse() {
         Ok(address) => Some(At::new(address, text.at)),
         Err(_) => {
-            found.wrong(text.at, "`host` is an address of this machine, such as \"127.0.0.1\"").help =
-                Some(g7_model::Said::foreign("\"0.0.0.0\" means each address of it".to_owned()));
+            found.wrong(text.at, say!("`host` is an address of this machine, such as \"127.0.0.1\"")).help =
+                Some(say!("\"0.0.0.0\" means each address of it"));
             None
         }
     }
@@ -97,8 +96,8 @@ pub(super) fn log(table: &mut Table<'_>, found: &mut Found) -> Option<LogFile> {
         }
         None => {
             if let Some(only) = days.or(mib) {
-                found.wrong(only.at, "there is no `log` to be kept so long").help =
-                    Some(g7_model::Said::foreign("name its file: `log = \"machine.log\"`".to_owned()));
+                found.wrong(only.at, say!("there is no `log` to be kept so long")).help =
+                    Some(say!("name its file: `log = \"machine.log\"`"));
             }
             None
         }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use g7_model::{FileId, Nanos, Problem, Span, codes};
+use g7_model::{FileId, Nanos, Problem, Said, Span, codes, say};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
@@ -38,8 +38,8 @@ impl Found {
         Span { file: self.file, start: range.start as u32, end: range.end as u32 }
     }
 
-    pub(super) fn wrong(&mut self, at: Span, what: impl Into<String>) -> &mut Problem {
-        self.problems.push(Problem::new(&codes::BAD_WIRING, at, g7_model::Said::foreign(what)));
+    pub(super) fn wrong(&mut self, at: Span, what: Said) -> &mut Problem {
+        self.problems.push(Problem::new(&codes::BAD_WIRING, at, what));
         let last = self.problems.len() - 1;
         &mut self.problems[last]
     }
@@ -51,13 +51,13 @@ pub(super) struct Table<'t> {
     /// The name of the table, or of what it describes.
     pub(super) at: Span,
     /// The thing that the table describes, for messages: `the device line1`.
-    what: String,
+    what: Said,
     asked: BTreeSet<&'static str>,
 }
 
 impl<'t> Table<'t> {
-    pub(super) fn new(table: &'t DeTable<'t>, at: Span, what: impl Into<String>) -> Table<'t> {
-        Table { table, at, what: what.into(), asked: BTreeSet::new() }
+    pub(super) fn new(table: &'t DeTable<'t>, at: Span, what: Said) -> Table<'t> {
+        Table { table, at, what, asked: BTreeSet::new() }
     }
 
     fn get(&mut self, key: &'static str) -> Option<&'t Spanned<DeValue<'t>>> {
@@ -65,12 +65,13 @@ impl<'t> Table<'t> {
         self.table.get(key)
     }
 
-    /// The value of a key as the reader makes it; a problem where it makes nothing of it.
+    /// The value of a key as the reader makes it; where it makes nothing of it, a problem that says of the
+    /// table what belongs there.
     fn read<T>(
         &mut self,
         found: &mut Found,
         key: &'static str,
-        expected: &str,
+        wanted: impl FnOnce(&Said) -> Said,
         reader: impl FnOnce(&DeValue<'t>) -> Option<T>,
     ) -> Option<At<T>> {
         let value = self.get(key)?;
@@ -78,14 +79,15 @@ impl<'t> Table<'t> {
         match reader(value.get_ref()) {
             Some(read) => Some(At::new(read, at)),
             None => {
-                found.wrong(at, format!("`{key}` of {} is {expected}", self.what));
+                found.wrong(at, wanted(&self.what));
                 None
             }
         }
     }
 
     pub(super) fn text(&mut self, found: &mut Found, key: &'static str) -> Option<At<String>> {
-        self.read(found, key, "a text in quotes", |v| v.as_str().map(str::to_owned))
+        let wanted = |what: &Said| say!("`{key}` of {what} is a text in quotes");
+        self.read(found, key, wanted, |v| v.as_str().map(str::to_owned))
     }
 
     /// A text that must be there.
@@ -96,9 +98,8 @@ impl<'t> Table<'t> {
         example: &str,
     ) -> Option<At<String>> {
         if self.table.get(key).is_none() {
-            let (at, what) = (self.at, format!("{} has no `{key}`", self.what));
-            found.wrong(at, what).help =
-                Some(g7_model::Said::foreign(format!("write `{key} = \"{example}\"`")));
+            let (at, what) = (self.at, say!("{} has no `{key}`", self.what));
+            found.wrong(at, what).help = Some(say!("write `{key} = \"{example}\"`"));
         }
         self.text(found, key)
     }
@@ -109,17 +110,18 @@ impl<'t> Table<'t> {
         key: &'static str,
         within: std::ops::RangeInclusive<i64>,
     ) -> Option<At<i64>> {
-        let expected = format!("a whole number from {} to {}", within.start(), within.end());
-        self.read(found, key, &expected, |v| integer(v).filter(|n| within.contains(n)))
+        let (least, most) = (*within.start(), *within.end());
+        let wanted = |what: &Said| say!("`{key}` of {what} is a whole number from {least} to {most}");
+        self.read(found, key, wanted, |v| integer(v).filter(|n| within.contains(n)))
     }
 
     pub(super) fn number(&mut self, found: &mut Found, key: &'static str) -> Option<At<f64>> {
-        self.read(found, key, "a number", number)
+        self.read(found, key, |what| say!("`{key}` of {what} is a number"), number)
     }
 
     /// True or false.
     pub(super) fn flag(&mut self, found: &mut Found, key: &'static str) -> Option<At<bool>> {
-        self.read(found, key, "true or false", DeValue::as_bool)
+        self.read(found, key, |what| say!("`{key}` of {what} is true or false"), DeValue::as_bool)
     }
 
     /// A duration within limits.
@@ -130,8 +132,10 @@ impl<'t> Table<'t> {
         least: Nanos,
         most: Nanos,
     ) -> Option<At<Nanos>> {
-        let expected = format!("a duration from {} to {}, such as \"20ms\"", least.plain(), most.plain());
-        self.read(found, key, &expected, |v| {
+        let (from, to) = (Said::foreign(least.plain()), Said::foreign(most.plain()));
+        let wanted =
+            |what: &Said| say!("`{key}` of {what} is a duration from {from} to {to}, such as \"20ms\"");
+        self.read(found, key, wanted, |v| {
             v.as_str().and_then(|t| g7_rig::values::duration(t).ok()).filter(|d| (least..=most).contains(d))
         })
     }
@@ -144,11 +148,16 @@ impl<'t> Table<'t> {
         words: &[(&str, T)],
     ) -> Option<At<T>> {
         let all: Vec<String> = words.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-        let expected = format!("one of {}", all.join(", "));
-        self.read(found, key, &expected, |v| {
-            let text = v.as_str()?;
-            words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
-        })
+        let all = Said::foreign(all.join(", "));
+        self.read(
+            found,
+            key,
+            |what| say!("`{key}` of {what} is one of {all}"),
+            |v| {
+                let text = v.as_str()?;
+                words.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
+            },
+        )
     }
 
     /// The value of a key as it stands.
@@ -162,8 +171,8 @@ impl<'t> Table<'t> {
         let at = found.span(value.span());
         let table = value.get_ref().as_table();
         if table.is_none() {
-            found.wrong(at, format!("`{key}` of {} is a table", self.what)).help =
-                Some(g7_model::Said::foreign(format!("begin it by a line `[{key}]`")));
+            found.wrong(at, say!("`{key}` of {} is a table", self.what)).help =
+                Some(say!("begin it by a line `[{key}]`"));
         }
         table.map(|table| (table, at))
     }
@@ -175,7 +184,7 @@ impl<'t> Table<'t> {
 
     /// A table within this one.
     pub(super) fn table(&mut self, found: &mut Found, key: &'static str) -> Option<Table<'t>> {
-        self.inner(found, key).map(|(table, at)| Table::new(table, at, format!("[{key}]")))
+        self.inner(found, key).map(|(table, at)| Table::new(table, at, Said::foreign(format!("[{key}]"))))
     }
 
     /// Ends the reading: other keys are problems.
@@ -185,8 +194,8 @@ impl<'t> Table<'t> {
                 continue;
             }
             let known: Vec<String> = self.asked.iter().map(|key| format!("`{key}`")).collect();
-            found.wrong(row.at, format!("{} has no setting `{}`", self.what, row.name)).help =
-                Some(g7_model::Said::foreign(format!("its settings are {}", known.join(", "))));
+            found.wrong(row.at, say!("{} has no setting `{}`", self.what, row.name)).help =
+                Some(say!("its settings are {}", Said::foreign(known.join(", "))));
         }
     }
 }

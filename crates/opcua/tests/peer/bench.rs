@@ -170,8 +170,8 @@ pub(crate) fn wired(folder: &Folder, chart: &str, io: &str) -> Result<(Bench, Wi
     let (mut setup, mut problems) = setup::read(io, FileId(1));
     setup::settle(&mut setup, &folder.0);
     problems.extend(setup::read_secrets(&mut setup, |origin| match origin {
-        Origin::File(name) => fs::read(folder.path(name)).map_err(|e| e.to_string()),
-        Origin::Variable(name) => Err(format!("no {name}")),
+        Origin::File(name) => fs::read(folder.path(name)).map_err(|e| g7_model::Said::foreign(e.to_string())),
+        Origin::Variable(name) => Err(g7_model::Said::foreign(format!("no {name}"))),
     }));
     let (wiring, more) = g7_online::wire(&bench, &setup);
     problems.extend(more);

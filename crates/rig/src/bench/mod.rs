@@ -221,7 +221,7 @@ impl Bench {
     }
 
     /// Asks whether one of the names was meant that come near; empty where there are none.
-    fn near(&self, name: &str) -> Said {
+    pub fn near(&self, name: &str) -> Said {
         let mut near: Vec<(usize, &str)> = self
             .items
             .iter()

@@ -12,7 +12,7 @@ mod values;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Said, Span, codes, say};
 
 use super::form::{Block, Class, Declared, Ex, St};
 use super::st::FAULT_COMES;
@@ -43,7 +43,7 @@ pub(super) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Prob
     let (out, variables, mut cannot) = p.values.done();
     let head = declarations(e, &variables, &mut cannot);
     if !cannot.is_empty() {
-        let problem = |what| Problem::new(&codes::NOT_CARRIED, place, g7_model::Said::foreign(what));
+        let problem = |what| Problem::new(&codes::NOT_CARRIED, place, what);
         return Err(cannot.into_iter().map(problem).collect());
     }
     let body = if out.is_empty() { "      NOP 0;\n".to_owned() } else { out };
@@ -56,7 +56,7 @@ pub(super) fn print(e: &Block, place: Span) -> Result<(String, String), Vec<Prob
     Ok((text, symbols(e)))
 }
 
-fn declarations(e: &Block, variables: &[Declared], cannot: &mut BTreeSet<String>) -> String {
+fn declarations(e: &Block, variables: &[Declared], cannot: &mut BTreeSet<Said>) -> String {
     let mut out = String::new();
     for note in &e.notes {
         let _ = writeln!(out, "// {}", line(note));
@@ -77,7 +77,7 @@ fn declarations(e: &Block, variables: &[Declared], cannot: &mut BTreeSet<String>
         let _ = writeln!(out, "{head}");
         for v in own {
             let Some(ty) = type_of(&v.ty) else {
-                cannot.insert(format!("a variable of type {} (S7-300 has none)", v.ty));
+                cannot.insert(say!("a variable of type {} (S7-300 has none)", Said::foreign(&v.ty)));
                 continue;
             };
             let ty = if v.elements == 1 {
@@ -108,7 +108,7 @@ fn actual(variables: &[Declared]) -> String {
     out
 }
 
-fn initial(e: &Ex, ty: &str, cannot: &mut BTreeSet<String>) -> String {
+fn initial(e: &Ex, ty: &str, cannot: &mut BTreeSet<Said>) -> String {
     match (e, type_of(ty)) {
         (Ex::Bool(b), _) => if *b { "TRUE" } else { "FALSE" }.to_owned(),
         (Ex::Int(n), Some("DINT")) => format!("L#{n}"),

@@ -6,7 +6,7 @@
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use g7_model::Nanos;
+use g7_model::{Nanos, Said, say};
 
 use crate::plc::form::{Declared, Ex};
 use crate::plc::variables::Variables;
@@ -47,13 +47,13 @@ pub(super) fn constant(e: &Ex) -> Option<String> {
 }
 
 /// The refusal of a constant.
-pub(super) fn no_room(e: &Ex) -> String {
+pub(super) fn no_room(e: &Ex) -> Said {
     let what = match e {
-        Ex::Time(_) => "a TIME below a millisecond or above 24 days",
-        Ex::Real(_) => "a number beyond REAL",
-        _ => "a number of more than 32 bits",
+        Ex::Time(_) => say!("a TIME below a millisecond or above 24 days"),
+        Ex::Real(_) => say!("a number beyond REAL"),
+        _ => say!("a number of more than 32 bits"),
     };
-    format!("{what} cannot be printed as AWL")
+    say!("{what} cannot be printed as AWL")
 }
 
 fn time_text(time: Nanos) -> Option<String> {
@@ -116,7 +116,7 @@ pub(super) struct Values {
     variables: Variables,
     pub(super) out: String,
     labels: usize,
-    cannot: BTreeSet<String>,
+    cannot: BTreeSet<Said>,
 }
 
 impl Values {
@@ -130,15 +130,15 @@ impl Values {
     }
 
     /// The instructions, all variables, and what cannot be said.
-    pub(super) fn done(mut self) -> (String, Vec<Declared>, BTreeSet<String>) {
+    pub(super) fn done(mut self) -> (String, Vec<Declared>, BTreeSet<Said>) {
         if self.labels > LABELS {
-            self.cannot("a chart that needs more than 46656 jumps");
+            self.cannot(say!("a chart that needs more than 46656 jumps"));
         }
         (self.out, self.variables.into_list(), self.cannot)
     }
 
-    fn cannot(&mut self, what: &str) {
-        self.cannot.insert(format!("{what} cannot be printed as AWL"));
+    fn cannot(&mut self, what: Said) {
+        self.cannot.insert(say!("{what} cannot be printed as AWL"));
     }
 
     pub(super) fn line(&mut self, text: &str) {
@@ -167,7 +167,7 @@ impl Values {
     pub(super) fn elements(&mut self, name: &str) -> u32 {
         let n = self.variables.elements(name);
         if n > LONG {
-            self.cannot("an index into a table of more than 64 elements");
+            self.cannot(say!("an index into a table of more than 64 elements"));
         }
         n.min(LONG)
     }
@@ -225,7 +225,7 @@ impl Values {
             e => {
                 self.line(&format!("{by}{not}("));
                 if !self.list(e) {
-                    self.cannot("this condition");
+                    self.cannot(say!("this condition"));
                 }
                 self.line(")");
             }
@@ -257,7 +257,7 @@ impl Values {
                     ("+" | "-" | "*" | "/", real) => {
                         self.line(&format!("{sign}{}", if real { 'R' } else { 'D' }))
                     }
-                    _ => self.cannot(&format!("the operator {sign} of these types")),
+                    _ => self.cannot(say!("the operator {} of these types", Said::foreign(*sign))),
                 }
             }
             Ex::Neg(inner) => {
@@ -305,14 +305,14 @@ impl Values {
                     "=" => self.ready(&(**a).clone().xor((**b).clone()).not(), depth),
                     "<>" => self.ready(&(**a).clone().xor((**b).clone()), depth),
                     _ => {
-                        self.cannot("an order of BOOL values");
+                        self.cannot(say!("an order of BOOL values"));
                         Ex::Bool(false)
                     }
                 }
             }
             Ex::Op(sign, a, b) => {
                 if self.is_real(a) != self.is_real(b) {
-                    self.cannot("a REAL beside a whole number or a TIME");
+                    self.cannot(say!("a REAL beside a whole number or a TIME"));
                 }
                 let b = self.leaf(b);
                 let a = self.ready(a, depth);
@@ -406,7 +406,7 @@ impl Values {
     }
 
     fn no_function(&mut self, name: &str) -> Ex {
-        self.cannot(&format!("the function {name}"));
+        self.cannot(say!("the function {}", Said::foreign(name)));
         Ex::Bool(false)
     }
 

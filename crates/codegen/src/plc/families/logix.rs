@@ -4,7 +4,7 @@
 //! FBD_TIMER. Numbers turn into each other without a call.
 
 use g7_iec::xml::element::Element;
-use g7_model::{Problem, Span};
+use g7_model::{Problem, Said, Span, say};
 
 use super::rewrite::{self, Refused};
 use crate::plc::form::{Block, Declared, Ex, St};
@@ -61,11 +61,11 @@ fn type_of(ty: &str) -> Option<&'static str> {
 /// A tag with its value.
 fn tag(v: &Declared, refused: &mut Refused) -> Element {
     let ty = type_of(&v.ty).unwrap_or_else(|| {
-        refused.add(format!("a variable of type {} (Logix has none)", v.ty));
+        refused.add(say!("a variable of type {} (Logix has none)", Said::foreign(&v.ty)));
         "DINT"
     });
     if v.name.contains("__") {
-        refused.add(format!("the name {}: Logix takes no two underlines in a row", v.name));
+        refused.add(say!("the name {}: Logix takes no two underlines in a row", Said::foreign(&v.name)));
     }
     let tag = Element::new("Tag").with("Name", &v.name).with("TagType", "Base").with("DataType", ty);
     let size = if ty == "BOOL" { v.elements.next_multiple_of(WORD) } else { v.elements };
@@ -156,7 +156,7 @@ fn word(e: Ex, refused: &mut Refused) -> Ex {
             None => rewrite::timed(e, refused),
         },
         Ex::Int(n) if i32::try_from(n).is_err() => {
-            refused.add("a number of more than 32 bits cannot be printed for Logix");
+            refused.add(say!("a number of more than 32 bits cannot be printed for Logix"));
             e
         }
         Ex::Var(name) => match name.strip_suffix(".ET") {
@@ -176,7 +176,7 @@ fn word(e: Ex, refused: &mut Refused) -> Ex {
             match (name.split_once("_TO_"), args.len()) {
                 (Some((from, to)), 1) if widens(from, to) => args.pop().unwrap_or(Ex::Int(0)),
                 _ => {
-                    refused.add(format!("the function {name} cannot be printed for Logix"));
+                    refused.add(say!("the function {} cannot be printed for Logix", Said::foreign(&name)));
                     Ex::Call(name, args)
                 }
             }

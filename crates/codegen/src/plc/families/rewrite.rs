@@ -3,17 +3,17 @@
 
 use std::collections::BTreeSet;
 
-use g7_model::{Problem, Span, codes};
+use g7_model::{Problem, Said, Span, codes, say};
 
 use crate::plc::form::{Block, Ex, St};
 
 /// The parts that a language cannot say, once each.
 #[derive(Debug, Default)]
-pub(super) struct Refused(BTreeSet<String>);
+pub(super) struct Refused(BTreeSet<Said>);
 
 impl Refused {
-    pub(super) fn add(&mut self, what: impl Into<String>) {
-        self.0.insert(what.into());
+    pub(super) fn add(&mut self, what: Said) {
+        self.0.insert(what);
     }
 
     /// The problems, all at `place`.
@@ -21,11 +21,7 @@ impl Refused {
         if self.0.is_empty() {
             return Ok(());
         }
-        Err(self
-            .0
-            .into_iter()
-            .map(|what| Problem::new(&codes::NOT_CARRIED, place, g7_model::Said::foreign(what)))
-            .collect())
+        Err(self.0.into_iter().map(|what| Problem::new(&codes::NOT_CARRIED, place, what)).collect())
     }
 }
 
@@ -39,7 +35,7 @@ pub(super) fn millis(e: &Ex) -> Option<i32> {
 /// Refuses a TIME that a count of milliseconds cannot hold.
 pub(super) fn timed(e: Ex, refused: &mut Refused) -> Ex {
     if matches!(e, Ex::Time(_)) && millis(&e).is_none() {
-        refused.add("a TIME below a millisecond or above 24 days: TIME counts milliseconds there");
+        refused.add(say!("a TIME below a millisecond or above 24 days: TIME counts milliseconds there"));
     }
     e
 }

@@ -4,7 +4,7 @@
 use std::fmt::Write;
 
 use g7_iec::xml::element::Element;
-use g7_model::{Problem, Span};
+use g7_model::{Problem, Said, Span, say};
 
 use super::rewrite::{self, Refused};
 use crate::plc::form::{Block, Declared, Ex};
@@ -71,13 +71,13 @@ fn word(e: Ex, refused: &mut Refused) -> Ex {
                     Err(args) => return Ex::Call(name, args),
                 },
                 "MUX" => {
-                    refused.add("the function MUX cannot be printed as SCL");
+                    refused.add(say!("the function MUX cannot be printed as SCL"));
                     Vec::new()
                 }
                 _ => return Ex::Call(name, args),
             };
             if inputs.len() != args.len() || inputs.contains(&"") {
-                refused.add(format!("{name} of so many values cannot be printed as SCL"));
+                refused.add(say!("{} of so many values cannot be printed as SCL", Said::foreign(&name)));
             }
             let given = inputs.into_iter().zip(args).map(|(input, e)| Ex::op(":=", Ex::var(input), e));
             Ex::Call(name, given.collect())

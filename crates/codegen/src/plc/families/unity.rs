@@ -1,7 +1,7 @@
 //! Control Expert and Unity Pro: a section in Structured Text with its variables (`.XST`).
 
 use g7_iec::xml::element::Element;
-use g7_model::{Problem, Span};
+use g7_model::{Problem, Said, Span, say};
 
 use super::rewrite::{self, Refused};
 use crate::plc::form::{Block, Declared, Ex};
@@ -49,7 +49,7 @@ fn type_of(ty: &str) -> Option<&'static str> {
 
 fn variable(v: &Declared, refused: &mut Refused) -> Element {
     let ty = type_of(&v.ty).unwrap_or_else(|| {
-        refused.add(format!("a variable of type {} (Control Expert has none)", v.ty));
+        refused.add(say!("a variable of type {} (Control Expert has none)", Said::foreign(&v.ty)));
         "DINT"
     });
     let ty = if v.elements == 1 { ty.to_owned() } else { format!("ARRAY[0..{}] OF {ty}", v.elements - 1) };
@@ -73,11 +73,11 @@ fn variable(v: &Declared, refused: &mut Refused) -> Element {
 fn word(e: Ex, refused: &mut Refused) -> Ex {
     match &e {
         Ex::Time(time) if time.count() < 0 => {
-            refused.add("a negative TIME: Control Expert has none");
+            refused.add(say!("a negative TIME: Control Expert has none"));
             e
         }
         Ex::Call(name, _) if ["SINT", "LINT", "LREAL"].iter().any(|ty| name.contains(ty)) => {
-            refused.add(format!("the function {name} cannot be printed for Control Expert"));
+            refused.add(say!("the function {} cannot be printed for Control Expert", Said::foreign(name)));
             e
         }
         _ => rewrite::timed(e, refused),

@@ -6,12 +6,12 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use g7_model::{Nanos, ProfileName};
+use g7_model::{Nanos, ProfileName, say};
 use g7_verify::{Budget, Kind, Model, ask, situations, words};
 
 use named::Named;
 
-use crate::failure::{Failure, Verdict};
+use crate::failure::{Failure, Verdict, raw};
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::{files, sources, values};
@@ -100,10 +100,10 @@ pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
     };
     let drawn = graph.nodes.iter().filter(|n| n.kind == Kind::Situation).count();
     if form != Form::Json && drawn > args.most {
-        return Err(Failure::Usage(format!(
+        return Err(Failure::Usage(say!(
             "{drawn} situations are too many for a drawing: write data with --as json, draw one chart alone, \
              assume what the environment keeps, or allow more than {} with --most",
-            args.most
+            raw(args.most)
         )));
     }
     let text = match form {
@@ -139,7 +139,10 @@ fn form(args: &Graph) -> Result<Form, Failure> {
             Some("svg") => Ok(Form::Svg),
             _ => {
                 let name = path.display();
-                Err(Failure::Usage(format!("{name} ends in none of .dot, .json, .svg; --as says the form")))
+                Err(Failure::Usage(say!(
+                    "{name} ends in none of .dot, .json, .svg; --as says the form",
+                    name = raw(&name)
+                )))
             }
         },
     }
