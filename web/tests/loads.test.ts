@@ -1,4 +1,4 @@
-// What the page fetches, and when: the second module of wasm only for what the first does not contain.
+// The files that the page fetches, and when: the second module of wasm only for what the first does not contain.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import { browser, done, openWith, playground, press, until, type Opened, type Site } from './lib';

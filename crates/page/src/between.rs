@@ -93,7 +93,7 @@ pub(crate) struct Imported {
     told: Vec<Told>,
 }
 
-/// What the reader told, in the language of the page.
+/// A problem that the reader told, in the language of the page.
 #[derive(Debug, Deserialize, Serialize)]
 struct Told {
     code: String,
