@@ -93,7 +93,7 @@ pub(crate) fn plain(error: &io::Error) -> Said {
     let mut letters = text.chars();
     let text: String =
         letters.next().map_or_else(String::new, |first| first.to_lowercase().chain(letters).collect());
-    // What a system says most often is told in each language; the rest is as the system has it.
+    // The usual messages of a system are told in each language; the others stay as the system has them.
     match text.as_str() {
         "no such file or directory" | "entity not found" => say!("no such file or directory"),
         "permission denied" => say!("permission denied"),
