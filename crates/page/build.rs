@@ -1,4 +1,5 @@
-//! Builds a list of the book's pages on problems, which `g7 explain` and the language server print.
+//! Builds a list of the book's pages on problems, which `g7 explain` and the language server print; takes the names of
+//! functions out of modules of wasm.
 //!
 //! They stand in `docs/book` in three languages. The page fetches them itself when they are asked for
 //! (`web/src/text/explain.ts`), so its modules of wasm use nothing of the list and do not contain it.
@@ -20,6 +21,13 @@ fn main() {
     let out = env::var("OUT_DIR").unwrap_or_default();
     if let Err(e) = fs::write(Path::new(&out).join("pages.rs"), table) {
         println!("cargo::error=cannot write the list of pages: {e}");
+    }
+    // `strip` of a profile does not reach a crate that has settings of its own there, as this one has. `G7_NAMES`
+    // keeps the names of functions, for a profiler.
+    println!("cargo::rerun-if-env-changed=G7_NAMES");
+    let in_browser = env::var("CARGO_CFG_TARGET_ARCH").is_ok_and(|arch| arch == "wasm32");
+    if in_browser && env::var_os("G7_NAMES").is_none() {
+        println!("cargo::rustc-link-arg-cdylib=--strip-all");
     }
 }
 
