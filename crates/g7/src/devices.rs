@@ -199,8 +199,7 @@ fn place(text: &str, usual: u16) -> Result<(String, u16), Failure> {
         Some((host, port)) => (host, port.parse().ok()),
         None => (text, Some(usual)),
     };
-    let port =
-        port.ok_or_else(|| Failure::Usage(say!("{text}: the port is no number", text = raw(&text))))?;
+    let port = port.ok_or_else(|| Failure::Usage(say!("{text}: the port is no number", text = raw(text))))?;
     Ok((host.trim_matches(['[', ']']).to_owned(), port))
 }
 

@@ -18,7 +18,7 @@ impl Scratch {
     pub(crate) fn new() -> Result<Scratch, Failure> {
         let mut bytes = [0; 8];
         getrandom::fill(&mut bytes)
-            .map_err(|e| Failure::Usage(say!("no random numbers: {e}", e = raw(&e))))?;
+            .map_err(|e| Failure::Usage(say!("no random numbers: {e}", e = raw(e))))?;
         let folder = std::env::temp_dir().join(format!("g7-{:016x}", u64::from_le_bytes(bytes)));
         std::fs::create_dir(&folder).map_err(|e| Failure::Write(folder.clone(), e))?;
         Ok(Scratch(folder))

@@ -178,8 +178,8 @@ fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure
         let (file, names) = (&source.name, names.join(", "));
         return Err(Failure::Usage(say!(
             "{file} has no chart {name}; it has {names}",
-            file = raw(&file),
-            name = raw(&name),
+            file = raw(file),
+            name = raw(name),
             names = raw(&names)
         )));
     }
@@ -228,7 +228,7 @@ fn each(
             return Err(Failure::Usage(say!(
                 "two charts would go to {path}; draw {name} alone",
                 path = raw(&path),
-                name = raw(&name)
+                name = raw(name)
             )));
         }
         made.push((path, picture(form, source, &[*chart], options, args.scale)?));

@@ -99,5 +99,5 @@ fn signed(png: Vec<u8>) -> Vec<u8> {
 fn pdf(tree: &usvg::Tree) -> Result<Vec<u8>, Failure> {
     svg2pdf::to_pdf(tree, svg2pdf::ConversionOptions::default(), svg2pdf::PageOptions::default())
         .map(|bytes| [bytes.as_slice(), files::PDF_MARK].concat())
-        .map_err(|e| Failure::Usage(say!("the PDF cannot be made: {e}", e = raw(&e))))
+        .map_err(|e| Failure::Usage(say!("the PDF cannot be made: {e}", e = raw(e))))
 }

@@ -69,7 +69,7 @@ fn moment(text: &str) -> Result<Moment, String> {
 /// Executes the command.
 pub(crate) fn history(args: &History) -> Result<Verdict, Failure> {
     let cannot = |e: &dyn std::fmt::Display| {
-        Failure::Usage(say!("cannot read {} as a history: {e}", raw(args.file.display()), e = raw(&e)))
+        Failure::Usage(say!("cannot read {} as a history: {e}", raw(args.file.display()), e = raw(e)))
     };
     if !args.file.is_file() {
         return Err(Failure::Read(args.file.clone(), io::ErrorKind::NotFound.into()));

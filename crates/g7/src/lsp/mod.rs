@@ -52,7 +52,7 @@ pub(crate) fn serve(follow: Option<&str>) -> Result<Verdict, Failure> {
 }
 
 fn session(connection: &Connection, follow: Option<&str>) -> Result<(), Failure> {
-    let broken = |e: &dyn std::fmt::Display| Failure::Usage(say!("the editor broke off: {e}", e = raw(&e)));
+    let broken = |e: &dyn std::fmt::Display| Failure::Usage(say!("the editor broke off: {e}", e = raw(e)));
     let (id, asked) = connection.initialize_start().map_err(|e| broken(&e))?;
     let hello = serde_json::json!({
         "capabilities": answers::capabilities(),

@@ -21,7 +21,7 @@ pub(super) fn one_file(args: &Prove, paths: &[PathBuf]) -> Result<(), Failure> {
         Failure::Usage(say!(
             "{option} takes one chart, and there are {}: name the one you mean",
             paths.len(),
-            option = raw(&option)
+            option = raw(option)
         ))
     };
     for (option, file) in [("--save", &args.save), ("--tests", &args.tests)] {

@@ -110,7 +110,7 @@ impl Workers {
                     _ => {
                         return Err(Failure::Usage(say!(
                             "process {number} has ended ({status})",
-                            status = raw(&status)
+                            status = raw(status)
                         )));
                     }
                 };

@@ -266,7 +266,7 @@ fn inputs(bench: &Bench) -> u64 {
 pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, Failure> {
     let text = String::from_utf8(files::read(path)?).unwrap_or_default();
     let tape = Tape::from_text(&text)
-        .map_err(|e| Failure::Usage(say!("{} {e}", raw(path.display()), e = raw(&e))))?;
+        .map_err(|e| Failure::Usage(say!("{} {e}", raw(path.display()), e = raw(e))))?;
     if tape.of() != inputs(bench) {
         return Err(Failure::Usage(say!(
             "{} is a record of another chart: its inputs have other names or types",

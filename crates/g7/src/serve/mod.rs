@@ -179,7 +179,7 @@ async fn tell_changes(shared: Shared) {
 fn token() -> Result<String, Failure> {
     let mut bytes = [0u8; 24];
     getrandom::fill(&mut bytes)
-        .map_err(|e| Failure::Usage(say!("the system gives no random numbers: {e}", e = raw(&e))))?;
+        .map_err(|e| Failure::Usage(say!("the system gives no random numbers: {e}", e = raw(e))))?;
     Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
@@ -198,8 +198,8 @@ async fn bind(host: IpAddr, port: Option<u16>) -> Result<TcpListener, Failure> {
         Failure::Usage(say!(
             "cannot listen at {host} port {port}: {}",
             crate::failure::plain(&e),
-            host = raw(&host),
-            port = raw(&port)
+            host = raw(host),
+            port = raw(port)
         ))
     })
 }
