@@ -181,7 +181,7 @@ pub fn recognise(name: &str, bytes: &[u8]) -> Option<&'static Format> {
     named(word_of(name, bytes)?)
 }
 
-/// True if [`recognise`] finds a format. Brings none of the readers with it.
+/// True if [`recognise`] finds a format. A program that calls this function alone does not contain the readers.
 pub fn is_foreign(name: &str, bytes: &[u8]) -> bool {
     word_of(name, bytes).is_some()
 }

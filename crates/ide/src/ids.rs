@@ -53,8 +53,8 @@ pub fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
     })
 }
 
-/// The innermost part that contains a place. A page asks this for each problem of a chart, so the parts
-/// before the place are passed over without a look: they stand in the order of the text.
+/// The innermost part that contains a place. The page calls this for each problem of a chart, so it is a binary
+/// search: the parts stand in the order of the text.
 pub fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
     let chart = document.charts().find(|c| holds(c.at.0, place))?;
     let behind = chart.items.partition_point(|item| item.at().start <= place.start);

@@ -26,8 +26,8 @@ pub(crate) const ELSEWHERE: &str = "the other module answers this";
 /// Why the first module does not open a file: the second one converts it.
 pub(crate) const FOREIGN: &str = "the other module reads this file";
 
-/// The refusal of what only the whole program contains: `if !WHOLE { return not_here(); }`. What follows is out of
-/// reach in the first module, so the compiler leaves it out with all that it alone needs.
+/// Refuses what only the whole program can answer: `if !WHOLE { return not_here(); }`. The first module never runs
+/// the code after this line, so the compiler removes that code, and everything that only it uses.
 pub(crate) fn not_here<T>() -> Result<T, String> {
     Err(ELSEWHERE.to_owned())
 }
@@ -38,7 +38,7 @@ pub(crate) fn not_here<T>() -> Result<T, String> {
 pub(crate) enum Between {
     /// A question about files that the other module has open.
     About { files: Vec<Lent>, ask: Request },
-    /// A file of another tool to be converted; the answer is the message `imported`.
+    /// Converts a file of another tool. The answer is the message `imported`, which the first module then gets.
     Import { ask: Lent },
     /// A converted file to be opened.
     Imported(Imported),
@@ -113,7 +113,7 @@ pub(crate) fn import(Lent { file, text }: Lent, language: Language) -> Result<Im
 }
 
 impl Imported {
-    /// Opens the text; the file is called as the foreign one.
+    /// Opens the text under the name of the foreign file.
     pub(crate) fn file(self) -> Result<(String, File), String> {
         let at = Span { file: FileId(0), start: 0, end: 0 };
         let problem = |told: Told| {

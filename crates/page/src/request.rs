@@ -1,5 +1,5 @@
-//! The messages that the page can send, each with the type of its answer: one table, of which the requests, the
-//! trait that answers them and the page's `protocol.ts` are made.
+//! The messages that the page can send, each with the type of its answer. They stand in one table. The requests, the
+//! trait that answers them and the page's `protocol.ts` are all made from it.
 
 use serde::Deserialize;
 
@@ -273,7 +273,8 @@ fn lane() -> usize {
 }
 
 impl Request {
-    /// The names of the files that a question is about which the first module does not answer.
+    /// The names of the files that the second module needs to answer this request. Empty if the first module
+    /// answers it.
     pub(crate) fn files(&self) -> Vec<String> {
         match self {
             Request::export(export { file, .. })

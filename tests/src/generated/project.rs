@@ -130,9 +130,18 @@ fn place<'s>(sight: &'s BTreeMap<String, u64>, name: &str) -> Option<(&'s String
 pub fn difference(want: &[Sight], got: &[Sight]) -> (usize, Option<String>) {
     let names: Vec<&String> = match (want.first(), got.first()) {
         (Some(w), Some(g)) => {
-            // The output `Q` of a block `T` is not the variable `Q`.
-            let other = |n: &String, there: &String| there != n && w.contains_key(there);
-            w.keys().filter(|n| place(g, n).is_some_and(|(there, _)| !other(n, there))).collect()
+            // The output `Q` of a block `T` is not the variable `Q`: of two names that are found at one place, the
+            // equal one is compared, else the shorter one.
+            let mut best: BTreeMap<&String, &String> = BTreeMap::new();
+            for name in w.keys() {
+                let Some((there, _)) = place(g, name) else { continue };
+                let worth = |n: &String| (n != there, n.len());
+                let known = best.entry(there).or_insert(name);
+                if worth(name) < worth(known) {
+                    *known = name;
+                }
+            }
+            best.into_values().collect()
         }
         _ => Vec::new(),
     };

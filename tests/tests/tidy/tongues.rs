@@ -30,7 +30,7 @@ fn literal(code: &str) -> Option<String> {
 
 /// The texts of `say!` in a source without its tests and comments.
 fn said_in(source: &str) -> Vec<String> {
-    // Tests of another file are only named here, and what follows them is the source's own.
+    // `#[cfg(test)] mod tests;` names tests in another file. The code after it belongs to this source.
     let of_tests = |rest: &str| rest.lines().next().is_some_and(|line| line.contains('{'));
     let begins =
         source.match_indices("#[cfg(test)]\nmod ").find(|(at, sign)| of_tests(&source[at + sign.len()..]));

@@ -23,8 +23,8 @@ pub(super) fn step_line<'a>(app: &App<'_>, step: &'a StepItem) -> Line<'a> {
     Line::from(spans).style(if on { ON } else { DIM })
 }
 
-/// A line for an item, in a list of this width. A narrow list cuts the comment off, then the end of a long
-/// name, but never the value.
+/// A line for an item, in a list of this width. Where the list is too narrow, the comment is cut off first, then
+/// the end of the name. The value is always shown.
 pub(super) fn item_line<'a>(
     app: &App<'a>,
     at: usize,

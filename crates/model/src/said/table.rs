@@ -30,7 +30,7 @@ const TABLES: &[&str] = &[
 #[cfg(target_arch = "wasm32")]
 const TABLES: &[&str] = &[];
 
-/// The rows that were handed in beside the parts of the table.
+/// Rows that a program without the table was given later, by [`teach`].
 static TAUGHT: OnceLock<String> = OnceLock::new();
 
 /// Hands in rows, in the form of the parts of the table. Only the first call does anything, and only before a text

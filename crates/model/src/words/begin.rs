@@ -2,7 +2,7 @@
 
 use super::row::Word;
 
-// These words begin an item of a file and an item of a chart alike.
+// Each of these words can begin an item of a file, and also an item of a chart.
 const INPUT: Word = Word::reserved(
     "input",
     ["a value from the plant", "une valeur qui vient du procédé", "um valor que vem do processo"],
