@@ -35,7 +35,7 @@ PAGE := $(shell find web/src docs/book/src/problems docs/book/fr docs/book/pt cr
 EXTENSION := editors/vscode
 EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
 
-.PHONY: grammars types vscode tree-sitter zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
+.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -123,6 +123,13 @@ vscode: $(EXTENDED)
 tree-sitter:
 	@command -v tree-sitter >/dev/null || cargo install --quiet --locked tree-sitter-cli@0.25.10
 	cd editors/tree-sitter-g7 && tree-sitter generate
+
+## the grammar and its queries for Helix, in its folder of settings
+helix: HELIX := $(or $(XDG_CONFIG_HOME),$(HOME)/.config)/helix/runtime
+helix: tree-sitter
+	mkdir -p $(HELIX)/queries/g7 $(HELIX)/grammars
+	cp editors/tree-sitter-g7/queries/*.scm $(HELIX)/queries/g7
+	cc -O2 -shared -fPIC -I editors/tree-sitter-g7/src editors/tree-sitter-g7/src/*.c -o $(HELIX)/grammars/g7.so
 
 ## the extension for Zed in target/zed, with a repository for its grammar
 zed: tree-sitter

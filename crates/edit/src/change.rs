@@ -66,7 +66,7 @@ pub struct Edit {
     /// The part whose field the user fills in next.
     pub begin: Option<ItemId>,
     /// Sentences for the user about the change.
-    pub told: Vec<String>,
+    pub told: Vec<Said>,
     /// The text after the change with all that was read of it, if it was read.
     pub read: Option<Box<Tree>>,
 }
@@ -93,6 +93,12 @@ impl std::fmt::Display for Refusal {
 }
 
 impl std::error::Error for Refusal {}
+
+impl From<Refusal> for Said {
+    fn from(refusal: Refusal) -> Said {
+        refusal.0
+    }
+}
 
 /// Refuses a gesture.
 pub(crate) fn refuse<T>(why: Said) -> Result<T, Refusal> {

@@ -8,8 +8,8 @@
 use std::collections::HashMap;
 
 use g7_model::{
-    Chart, ChartItem, Document, Expr, ExprKind, FileId, Item, Literal, Name, Place, Span, Step, StepKind,
-    Transition, say,
+    Chart, ChartItem, Document, Expr, ExprKind, FileId, Item, Literal, Name, Place, Said, Span, Step,
+    StepKind, Transition, say,
 };
 
 use crate::change::{Anchors, Refusal, Source, refuse};
@@ -39,7 +39,7 @@ pub(crate) struct Draft<'s> {
     pub(crate) select: Vec<Mark>,
     pub(crate) begin: Option<Mark>,
     /// Sentences for the user.
-    pub(crate) told: Vec<String>,
+    pub(crate) told: Vec<Said>,
     fresh: u32,
 }
 

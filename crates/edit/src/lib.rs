@@ -42,7 +42,7 @@ use g7_syntax::Tree;
 
 use change::refuse;
 use draft::Draft;
-use reading::{judge, judge_problems, mended_first, read, unwritable};
+use reading::{judge, judge_problems, read, unwritable};
 
 /// Executes a gesture; places of symbols are known only from the layout section of the text.
 pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
@@ -58,10 +58,6 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
         };
     }
     if let Gesture::Rename { id, name, to } = gesture {
-        // Names in a text that cannot be read are not known.
-        if !source.is_clean() {
-            return refuse(mended_first());
-        }
         return gestures::rename(source, id.as_ref(), name.as_deref(), to);
     }
     if let Gesture::Variable { name: Some(name), row } = gesture
@@ -95,9 +91,6 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
 
 /// Renames the part that is named at a byte of the text, wherever it is used.
 pub fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
-    if !source.is_clean() {
-        return refuse(say!("the text has syntax errors; correct them first"));
-    }
     gestures::rename_at(source, at, to)
 }
 

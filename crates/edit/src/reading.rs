@@ -33,6 +33,11 @@ pub(crate) fn judge_problems(source: &Source<'_>, splices: &[Splice], tree: &Tre
     if !splices.iter().all(|s| source.reads_cleanly(s.start..s.end)) {
         return refuse(mended_first());
     }
+    same_problems(source, splices, tree)
+}
+
+/// Checks that the text has the same problems as before, wherever they stand.
+pub(crate) fn same_problems(source: &Source<'_>, splices: &[Splice], tree: &Tree) -> Result<(), Refusal> {
     let before = |new: &&Problem| {
         source.problems.iter().any(|old| {
             (old.code, &old.what) == (new.code, &new.what)

@@ -338,8 +338,8 @@ impl Attendant {
         let (name, value) = line.split_once('=').unwrap_or((line, ""));
         let name = name.trim_end_matches(':').trim();
         let bench = &self.names.bench;
-        let item = bench.item(name).ok_or_else(|| bench.unknown(name))?;
-        let word = match values::read(value, item.kind)? {
+        let item = bench.item(name).ok_or_else(|| bench.unknown(name).to_string())?;
+        let word = match values::read(value, item.kind).map_err(|e| e.to_string())? {
             Value::Word(word) => word,
             Value::Text(_) => return Err(format!("`{name}` is a text: it cannot be set here")),
         };

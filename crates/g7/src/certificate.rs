@@ -15,7 +15,7 @@ use g7_model::say;
 
 use crate::failure::{Failure, Verdict, raw};
 use crate::files;
-use crate::message::talk;
+use crate::message::{tell, wrote};
 
 /// Certificates that last longer are refused by some browsers.
 const LONGEST: u16 = 825;
@@ -77,8 +77,10 @@ pub(crate) fn certificate(args: &Cert) -> Result<Verdict, Failure> {
     g7_host::write_private(&args.key, key.serialize_pem().as_bytes())
         .map_err(|e| Failure::Write(args.key.clone(), e))?;
     files::write(&args.cert, cert.pem().as_bytes())?;
-    talk!("wrote {} and {}", args.cert.display(), args.key.display());
-    talk!("for {}, until {}", names.join(", "), utc_day(today + DAY * u64::from(args.days)));
+    wrote(args.cert.display());
+    wrote(args.key.display());
+    let last = raw(utc_day(today + DAY * u64::from(args.days)));
+    tell(say!("for {}, until {last}", raw(names.join(", "))));
     let print: Vec<String> = Sha256::digest(cert.der()).iter().map(|byte| format!("{byte:02X}")).collect();
     files::deliver(None, format!("SHA-256 {}\n", print.join(":")).as_bytes())?;
     Ok(Verdict::Fine)

@@ -17,6 +17,7 @@ use g7_online::{
 
 use crate::brought;
 use crate::failure::{Failure, Verdict, raw};
+use crate::message::told;
 use crate::wiring::{self, Wanted};
 use crate::{files, sources, style, values};
 
@@ -296,15 +297,15 @@ fn browse(clients: &Clients, device: &Device) -> Result<Verdict, Failure> {
     let mut out = anstream::stdout().lock();
     let verdict = match clients.browse(device) {
         None => {
-            writeln!(out, "  {name} cannot be asked for its points")?;
+            writeln!(out, "  {}", told(&say!("{} cannot be asked for its points", raw(name))))?;
             Verdict::Fine
         }
         Some(Err(why)) => {
-            writeln!(out, "  {warn}its points cannot be read:{warn:#} {why}")?;
+            writeln!(out, "  {warn}{}{warn:#} {why}", told(&say!("its points cannot be read:")))?;
             Verdict::Found
         }
         Some(Ok(nodes)) => {
-            writeln!(out, "  points of {name}:")?;
+            writeln!(out, "  {}", told(&say!("points of {}:", raw(name))))?;
             for node in &nodes {
                 let (indent, point) = ("  ".repeat(node.depth + 2), &node.point);
                 match node.value {
@@ -328,27 +329,27 @@ fn print(device: &Device, shown: &[Shown], probed: Result<Probed, Failed>) -> Re
     let probed = match probed {
         Ok(probed) => probed,
         Err(why) => {
-            writeln!(out, "{strong}{name}{strong:#} {bad}does not answer:{bad:#} {why}")?;
+            writeln!(out, "{strong}{name}{strong:#} {bad}{}{bad:#} {why}", told(&say!("does not answer:")))?;
             out.flush()?;
             return Ok(Verdict::Found);
         }
     };
-    let took = probed.took.as_secs_f64() * 1e3;
-    writeln!(out, "{strong}{name}{strong:#} {good}answers{good:#} in {took:.1} ms")?;
+    let took = told(&say!("in {} ms", raw(format!("{:.1}", probed.took.as_secs_f64() * 1e3))));
+    writeln!(out, "{strong}{name}{strong:#} {good}{}{good:#} {took}", told(&say!("answers")))?;
     let width = shown.iter().map(|s| s.name.chars().count()).max().unwrap_or(0);
     let mut verdict = Verdict::Fine;
     for (shown, value) in shown.iter().zip(&probed.values) {
         let text = match value {
             Ok(raw) => text(*raw, shown.scaling.as_ref()),
             // A broker that keeps no message is no fault.
-            Err(Absent::Unread) if matches!(shown.wire, Wire::Topic(_)) => "no message".to_owned(),
+            Err(Absent::Unread) if matches!(shown.wire, Wire::Topic(_)) => told(&say!("no message")),
             // An edge node is the one who knows the values.
-            Err(Absent::Unread) if matches!(shown.wire, Wire::Metric(_)) => "of this node".to_owned(),
+            Err(Absent::Unread) if matches!(shown.wire, Wire::Metric(_)) => told(&say!("of this node")),
             Err(why) => {
                 verdict = Verdict::Found;
                 let why = match why {
-                    Absent::Unread => "it gave no value",
-                    Absent::Refused(why) => why,
+                    Absent::Unread => told(&say!("it gave no value")),
+                    Absent::Refused(why) => why.clone(),
                 };
                 format!("{warn}{why}{warn:#}")
             }
@@ -369,8 +370,8 @@ fn served(wired: &Wired, how: &str) -> Result<Verdict, Failure> {
     let channels = channels(wired);
     let width = channels.iter().map(|c| c.name.chars().count()).max().unwrap_or(0);
     for (k, channel) in channels.iter().enumerate() {
-        let use_ = if k < wired.inputs.len() { "written" } else { "read" };
-        writeln!(out, "  {:<width$}  {use_}", channel.name)?;
+        let use_ = if k < wired.inputs.len() { say!("written") } else { say!("read") };
+        writeln!(out, "  {:<width$}  {}", channel.name, told(&use_))?;
     }
     out.flush()?;
     Ok(Verdict::Fine)

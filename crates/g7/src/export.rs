@@ -8,7 +8,7 @@ use g7_exchange::{Dialect, FORMATS, Format};
 use g7_model::{Severity, say};
 
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{talk, tell};
 use crate::report::{self, Tally};
 use crate::{files, sources};
 
@@ -121,7 +121,7 @@ pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Fail
         found(&source, &written.problems);
     }
     if lost && !args.lossy {
-        talk!("nothing is written; --lossy writes it all the same");
+        tell(say!("nothing is written; --lossy writes it all the same"));
         return Ok(Verdict::Found);
     }
     files::deliver(args.output.as_deref(), written.text.as_bytes())?;

@@ -61,7 +61,7 @@ impl From<g7_rig::Error> for Failure {
                     raw(there.join(", "))
                 )
             }
-            other @ g7_rig::Error::NoPlant { .. } => raw(other),
+            other @ g7_rig::Error::NoPlant { .. } => other.said(),
         })
     }
 }

@@ -9,8 +9,7 @@ use std::path::{Path, PathBuf};
 use g7_model::say;
 
 use crate::failure::{Failure, raw};
-use crate::message::talk;
-use crate::style;
+use crate::message::wrote;
 
 /// Longest file that is read; the parser's own limit is lower.
 const LONGEST: u64 = 64 << 20;
@@ -111,7 +110,7 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
     match output {
         Some(path) => {
             write(path, bytes)?;
-            talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+            wrote(path.display());
         }
         None => {
             // The bytes are written unchanged, because they may be a picture.

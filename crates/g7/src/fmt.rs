@@ -7,10 +7,10 @@ use g7_model::say;
 
 use crate::cli::Fmt;
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::files;
+use crate::message::{done, talk, tell};
 use crate::report::{self, Tally};
 use crate::sources;
-use crate::{files, style};
 
 pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
     let paths = files::all(&args.paths)?;
@@ -26,7 +26,7 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
         }
         if source.has_errors() {
             talk!("{}", report::text(&source, &source.problems).trim_end());
-            talk!("{}: left as it is: {}", source.name, Tally::of(&source.problems));
+            tell(say!("{}: left as it is: {}", raw(&source.name), raw(Tally::of(&source.problems))));
             refused += 1;
             continue;
         }
@@ -45,13 +45,13 @@ pub(crate) fn fmt(args: &Fmt) -> Result<Verdict, Failure> {
             (false, false) if same => {}
             (false, false) => {
                 files::write(path, text.as_bytes())?;
-                talk!("{}formatted{:#} {}", style::GOOD, style::GOOD, source.name);
+                done(&say!("formatted"), &source.name);
             }
         }
     }
     out.flush()?;
     if (args.check || args.diff) && changed > 0 {
-        talk!("{changed} of {} files would change", paths.len());
+        tell(say!("{changed} of {} files would change", paths.len()));
     }
     Ok(if refused > 0 || (args.check && changed > 0) { Verdict::Found } else { Verdict::Fine })
 }

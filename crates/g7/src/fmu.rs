@@ -10,9 +10,9 @@ use g7_model::{ProfileName, say};
 use zip::write::SimpleFileOptions;
 
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{note, wrote};
 use crate::scratch::Scratch;
-use crate::{files, style, values};
+use crate::{files, values};
 
 /// Compilers that are tried if `CC` names none.
 const COMPILERS: [&str; 3] = ["cc", "gcc", "clang"];
@@ -79,7 +79,7 @@ pub(crate) fn pack(args: &Fmu, name: &str, made: &Files) -> Result<Verdict, Fail
         std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
     }
     files::write(&to, &bytes)?;
-    talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, to.display());
+    wrote(to.display());
     Ok(Verdict::Fine)
 }
 
@@ -96,20 +96,14 @@ fn archive(entries: &[(String, Vec<u8>)]) -> zip::result::ZipResult<Vec<u8>> {
 /// The library for this machine and its path in the archive; without a compiler there is none, which is told.
 fn library(version: Version, made: &Files) -> Result<Option<(String, Vec<u8>)>, Failure> {
     let Some(folder) = version.folder(std::env::consts::OS, std::env::consts::ARCH) else {
-        talk!(
-            "{}note:{:#} FMI has no name for this machine: the FMU holds the sources alone",
-            style::WARN,
-            style::WARN
-        );
+        note(say!("FMI has no name for this machine: the FMU holds the sources alone"));
         return Ok(None);
     };
     let Some(compiler) = compiler() else {
-        talk!(
-            "{}note:{:#} no C compiler was found (CC, cc, gcc, clang): the FMU holds the sources alone, and the \
-             simulator has to compile them",
-            style::WARN,
-            style::WARN
-        );
+        note(say!(
+            "no C compiler was found (CC, cc, gcc, clang): the FMU holds the sources alone, and the simulator has \
+             to compile them"
+        ));
         return Ok(None);
     };
     let scratch = Scratch::new()?;

@@ -11,7 +11,7 @@ use g7_codegen::{
 use g7_model::{Problem, ProfileName, Severity, say};
 
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{talk, tell, wrote};
 use crate::report::{self, Tally};
 use crate::sources::Source;
 use crate::{files, fmu, sources, style, values};
@@ -371,36 +371,34 @@ struct Written {
 
 /// Tells the memory that the code takes. False where a board has less.
 fn tell_sizes(sizes: Sizes, room: Room, board: Option<Board>) -> bool {
-    talk!(
+    tell(say!(
         "memory: {} bytes of RAM for the state (inputs, outputs and variables included) on an 8-bit AVR, {} on 32 \
          bits; {} bytes of tables in flash. Not counted: instructions, the stack, the program around",
         sizes.avr,
         sizes.wide,
         sizes.tables
-    );
+    ));
     let Some(board) = board else { return true };
     let (state, left) = (board.state(sizes), board.ram.saturating_sub(board.reserve));
     if board.holds(sizes) {
-        talk!(
+        tell(say!(
             "{}: {state} of {left} bytes, with {} left for the stack and the board",
-            board.name,
+            raw(board.name),
             board.reserve
-        );
+        ));
         return true;
     }
     let way = if room == (Room { small: true, clock: Clock::Milliseconds }) {
-        "split the chart, or take a larger board"
+        say!("split the chart, or take a larger board")
     } else {
-        "try --small --time-unit ms, or a larger board"
+        say!("try --small --time-unit ms, or a larger board")
     };
-    talk!(
-        "{}{}{:#} is too small: the state takes {state} bytes, and {left} of its {} are free beside the stack and the \
+    let name = raw(format!("{}{}{:#}", style::BAD, board.name, style::BAD));
+    tell(say!(
+        "{name} is too small: the state takes {state} bytes, and {left} of its {} are free beside the stack and the \
          board; {way}",
-        style::BAD,
-        board.name,
-        style::BAD,
         board.ram
-    );
+    ));
     false
 }
 
@@ -488,10 +486,10 @@ fn deliver(what: &What, printed: &[File]) -> Result<(), Failure> {
             std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_owned(), e))?;
         }
         files::write(path, file.text.as_bytes())?;
-        talk!("{}wrote{:#} {}", style::GOOD, style::GOOD, path.display());
+        wrote(path.display());
     }
     if new.is_empty() {
-        talk!("{}: everything is there already, as it would be written", folder.display());
+        tell(say!("{}: everything is there already, as it would be written", raw(folder.display())));
     }
     Ok(())
 }

@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use g7_model::say;
 
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{talk, tell};
 use crate::wiring;
 
 #[derive(Args, Debug)]
@@ -131,12 +131,11 @@ fn path(file: &Path) -> Result<PathBuf, Failure> {
 fn told(path: &Path, checked: Result<Checked, Broken>) -> Result<Verdict, Failure> {
     match checked {
         Ok(Checked { rows, gone, newest }) => {
-            let old = if gone > 0 {
-                format!(", behind {gone} that were too old to be kept")
-            } else {
-                String::new()
-            };
-            talk!("{}: {rows} rows, each fits{old}", path.display());
+            let name = raw(path.display());
+            tell(match gone {
+                0 => say!("{name}: {rows} rows, each fits"),
+                _ => say!("{name}: {rows} rows, each fits, behind {gone} that were too old to be kept"),
+            });
             let mut out = anstream::stdout();
             writeln!(out, "{newest}")?;
             out.flush()?;

@@ -70,7 +70,6 @@ use clap::Parser;
 
 use crate::cli::{Cli, Color, Command};
 use crate::failure::{Failure, Verdict};
-use crate::message::talk;
 
 fn main() -> ExitCode {
     let cli = Cli::parse();
@@ -86,7 +85,7 @@ fn main() -> ExitCode {
         Ok(Verdict::Open) => ExitCode::from(3),
         Err(failure) if failure.is_quiet() => ExitCode::SUCCESS,
         Err(failure) => {
-            talk!("{}error:{:#} {failure}", style::BAD, style::BAD);
+            message::error(&failure);
             ExitCode::from(2)
         }
     }

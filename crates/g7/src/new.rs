@@ -9,7 +9,7 @@ use g7_model::say;
 use crate::cli::New;
 use crate::failure::{Failure, Verdict, raw};
 use crate::files;
-use crate::message::talk;
+use crate::message::tell;
 
 const CHART: &str = include_str!("new/chart.g7");
 const README: &str = include_str!("new/README.md");
@@ -43,7 +43,7 @@ pub(crate) fn new(args: &New) -> Result<Verdict, Failure> {
     let mut out = io::stdout().lock();
     writeln!(out, "{shown}/chart.g7\n{shown}/README.md")?;
     out.flush()?;
-    talk!("made {shown}; now try `g7 run {shown}` and `g7 test {shown}`");
+    tell(say!("made {}; now try `g7 run {shown}` and `g7 test {shown}`", raw(&shown)));
     Ok(Verdict::Fine)
 }
 

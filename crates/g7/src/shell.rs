@@ -8,7 +8,7 @@ use clap::CommandFactory;
 use crate::cli::{Cli, Completions, Man};
 use crate::failure::{Failure, Verdict};
 use crate::files;
-use crate::message::talk;
+use crate::message::wrote;
 
 pub(crate) fn completions(args: &Completions) -> Result<Verdict, Failure> {
     let mut text = Vec::new();
@@ -35,7 +35,7 @@ pub(crate) fn man(args: &Man) -> Result<Verdict, Failure> {
         let mut text = Vec::new();
         clap_mangen::Man::new(page).render(&mut text)?;
         files::write(&folder.join(format!("{name}.1")), &text)?;
-        talk!("wrote {}", folder.join(format!("{name}.1")).display());
+        wrote(folder.join(format!("{name}.1")).display());
     }
     Ok(Verdict::Fine)
 }

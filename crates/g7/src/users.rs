@@ -11,11 +11,11 @@ use g7_store::log::Log;
 use g7_store::users::{Role, UserError, Users as File};
 use serde_json::{Value, json};
 
-use g7_model::say;
+use g7_model::{Said, say};
 
 use crate::audit::{self, Audit};
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{talk, tell, told};
 use crate::who::Who;
 use crate::wiring;
 
@@ -100,7 +100,17 @@ struct Open {
 }
 
 fn failed(error: UserError) -> Failure {
-    Failure::Usage(raw(error))
+    Failure::Usage(error.said())
+}
+
+/// A role in words; the words of the command line stay as they are.
+fn called(role: Role) -> Said {
+    match role {
+        Role::Viewer => say!("viewer"),
+        Role::Operator => say!("operator"),
+        Role::Engineer => say!("engineer"),
+        Role::Admin => say!("admin"),
+    }
 }
 
 fn open(at: &In) -> Result<Open, Failure> {
@@ -109,7 +119,7 @@ fn open(at: &In) -> Result<Open, Failure> {
     let log = log.map(|path| audit::open(&path, None, None)).transpose()?;
     let (log, audit) = log.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
     let users = File::open(&path).map_err(|e| {
-        Failure::Usage(say!("cannot use {} as the users: {e}", raw(path.display()), e = raw(&e)))
+        Failure::Usage(say!("cannot use {} as the users: {e}", raw(path.display()), e = e.said()))
     })?;
     Ok(Open { users, _log: log, audit })
 }
@@ -154,12 +164,12 @@ pub(crate) fn users(args: &Users) -> Result<Verdict, Failure> {
             open.change("user-add", &json!({ "user": name, "role": role.word() }), |users| {
                 users.add(name, *role, &password, utc_millis(), false)
             })?;
-            talk!("added {name}, {role}");
+            tell(say!("added {}, {}", raw(name), called(*role)));
         }
         Work::Role { at, name, role } => {
             let data = json!({ "user": name, "role": role.word() });
             open(at)?.change("user-role", &data, |users| users.set_role(name, *role))?;
-            talk!("{name} is {role}");
+            tell(say!("{} is {}", raw(name), called(*role)));
         }
         Work::Password { at, name } => {
             let open = open(at)?;
@@ -167,15 +177,15 @@ pub(crate) fn users(args: &Users) -> Result<Verdict, Failure> {
             open.change("user-password", &json!({ "user": name }), |users| {
                 users.set_password(name, &password)
             })?;
-            talk!("{name} has another password");
+            tell(say!("{} has another password", raw(name)));
         }
         Work::Remove { at, name } => {
             open(at)?.change("user-remove", &json!({ "user": name }), |users| users.remove(name))?;
-            talk!("removed {name}");
+            tell(say!("removed {}", raw(name)));
         }
         Work::Revoke { at, name } => {
             open(at)?.change("user-revoke", &json!({ "user": name }), |users| users.revoke(name))?;
-            talk!("{name} has no session any more");
+            tell(say!("{} has no session any more", raw(name)));
         }
     }
     Ok(Verdict::Fine)
@@ -191,7 +201,8 @@ fn list(at: &In) -> Result<(), Failure> {
     for user in users.list().map_err(failed)? {
         let day = utc_text(user.created);
         let day = day.get(..10).unwrap_or(&day);
-        writeln!(out, "{:<24} {:<9} since {day}  sessions: {}", user.name, user.role.word(), user.sessions)?;
+        let since = told(&say!("since {}  sessions: {}", raw(day), user.sessions));
+        writeln!(out, "{:<24} {:<12} {since}", user.name, told(&called(user.role)))?;
     }
     Ok(out.flush()?)
 }
@@ -203,15 +214,15 @@ fn password(name: &str) -> Result<String, Failure> {
         std::io::stdin().lock().read_line(&mut line)?;
         return Ok(line.trim_end_matches(['\r', '\n']).to_owned());
     }
-    let first = typed(&format!("password for {name}: "))?;
-    if typed("once more: ")? != first {
+    let first = typed(&say!("password for `{name}`: "))?;
+    if typed(&say!("once more: "))? != first {
         return Err(Failure::Usage(say!("the two are not the same; nothing was changed")));
     }
     Ok(first)
 }
 
 /// A line that the terminal does not show.
-fn typed(ask: &str) -> Result<String, Failure> {
+fn typed(ask: &Said) -> Result<String, Failure> {
     /// Gives the terminal back however the reading ends.
     struct Raw;
     impl Drop for Raw {
@@ -220,7 +231,7 @@ fn typed(ask: &str) -> Result<String, Failure> {
             talk!();
         }
     }
-    write!(anstream::stderr(), "{ask}")?;
+    write!(anstream::stderr(), "{}", told(ask))?;
     enable_raw_mode()?;
     let _raw = Raw;
     let mut line = String::new();

@@ -60,7 +60,7 @@ pub(crate) fn assign(text: &str) -> Result<Assign, String> {
     let (name, rest) = text.split_once('=').ok_or(form)?;
     // A text may contain `@`; the time follows the last one.
     let (value, at) = match rest.rsplit_once('@') {
-        Some((value, at)) => (value, duration(at)?),
+        Some((value, at)) => (value, duration(at).map_err(|e| e.to_string())?),
         None => (rest, Nanos::ZERO),
     };
     if name.trim().is_empty() {

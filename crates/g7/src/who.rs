@@ -1,5 +1,6 @@
 //! Who wants something: a user of the server, whoever has the token, or the terminal.
 
+use g7_model::{Said, say};
 use g7_store::users::{Role, SessionHash};
 
 /// A person, as far as G7 knows.
@@ -26,11 +27,11 @@ impl Who {
     }
 
     /// Refuses what needs a greater role.
-    pub(crate) fn needs(&self, role: Role) -> Result<(), String> {
+    pub(crate) fn needs(&self, role: Role) -> Result<(), Said> {
         if self.role >= role {
             return Ok(());
         }
-        Err(format!("this needs the role {role}; `{}` is {}", self.name, self.role))
+        Err(say!("this needs the role `{role}`; `{}` is `{}`", self.name, self.role))
     }
 }
 

@@ -4,6 +4,8 @@
 mod common;
 #[path = "lsp/editor.rs"]
 mod editor;
+#[path = "lsp/helix.rs"]
+mod helix;
 
 use std::io::{BufRead, BufReader, Write};
 use std::process::{Child, Command, Stdio};
@@ -87,6 +89,29 @@ fn names_are_found_explained_and_changed_everywhere() {
     assert!(edits.iter().all(|e| e["newText"] == "start"), "{edits:?}");
     let refused = rename(&mut editor, "V");
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("`V`")), "{refused}");
+}
+
+#[test]
+fn a_name_is_changed_beside_a_syntax_error_but_not_where_that_may_hold_it() {
+    let rename = |text: &str, locale: &str| {
+        let mut editor = Editor::speaking(Some(locale)).opened(URI, text);
+        let at = json!({ "line": 0, "character": 7 });
+        assert_eq!(editor.at("textDocument/prepareRename", 0, 7)["placeholder"], "go");
+        let params = json!({ "textDocument": { "uri": URI }, "position": at, "newName": "start" });
+        editor.answer("textDocument/rename", params)
+    };
+    let broken = TEXT.replacen("expect V", "expect V and", 1);
+    let edits = rename(&broken, "en")["result"]["changes"][URI].clone();
+    assert_eq!(edits.as_array().map(Vec::len), Some(4), "{edits}");
+    let broken = TEXT.replacen("expect V", "expect V what go", 1);
+    for (locale, words) in [
+        ("en", "line 16 may name `go`"),
+        ("fr", "la ligne 16 peut nommer `go`"),
+        ("pt", "a linha 16 pode nomear `go`"),
+    ] {
+        let refused = rename(&broken, locale)["error"]["message"].clone();
+        assert!(refused.as_str().is_some_and(|m| m.starts_with(words)), "{locale}: {refused}");
+    }
 }
 
 #[test]

@@ -109,3 +109,51 @@ fn the_last_line_is_told_in_each_language() {
         assert!(told(&folder, &["test", "tested.g7"], lang).out.contains(tested), "{lang}");
     }
 }
+
+#[test]
+fn a_failed_test_is_told_in_each_language() {
+    let test = format!("{CHART}test \"starts\" {{\n    expect not q\n}}\n");
+    let folder = folder(&[("tested.g7", &test)]);
+    for (lang, what, place) in [
+        ("en", "expected: not q", "at tested.g7:10:12, 0s after the start"),
+        ("fr", "attendu", "à tested.g7:10:12, 0s après le début"),
+        ("pt", "esperado", "em tested.g7:10:12, 0s após o início"),
+    ] {
+        let ran = told(&folder, &["test", "tested.g7"], lang);
+        assert!(ran.out.contains(what) && ran.out.contains(place), "{lang}: {}", ran.out);
+        ran.is(1);
+    }
+}
+
+#[test]
+fn answers_and_what_was_written_are_told_in_each_language() {
+    let folder = folder(&[("chart.g7", CHART), ("claim.g7", &format!("{CHART}prove never q\n"))]);
+    for (lang, refuted, counted, wrote) in [
+        ("en", "refuted: prove never q", "1 refuted, 0 not decided", "wrote chart-en.svg"),
+        ("fr", "réfuté", "1 réfutées, 0 non décidées", "écrit chart-fr.svg"),
+        ("pt", "refutado", "1 refutadas, 0 não decididas", "escrito chart-pt.svg"),
+    ] {
+        let ran = told(&folder, &["prove", "claim.g7"], lang);
+        assert!(ran.out.contains(refuted) && ran.out.contains(counted), "{lang}: {}", ran.out);
+        let to = format!("chart-{lang}.svg");
+        let ran = told(&folder, &["draw", "chart.g7", "-o", &to], lang);
+        assert!(ran.err.contains(wrote), "{lang}: {}", ran.err);
+    }
+}
+
+#[test]
+fn users_and_certificates_are_told_in_each_language() {
+    let folder = folder(&[("chart.g7", CHART), ("cert.pem", "none"), ("key.pem", "none")]);
+    for (lang, short, pem) in [
+        ("en", "a password has at least 10 letters", "cert.pem has no certificate (PEM)"),
+        ("fr", "un mot de passe a au moins 10 lettres", "cert.pem n’a pas de certificat (PEM)"),
+        ("pt", "uma palavra-passe tem pelo menos 10 letras", "cert.pem não tem certificado (PEM)"),
+    ] {
+        let add = ["users", "add", "g7.users", "ana", "admin", "--lang", lang];
+        let ran: Ran = folder.command(&add).env("LC_ALL", "C").stdin("short\n").assert().into();
+        assert!(ran.err.contains(short), "{lang}: {}", ran.err);
+        let tls = ["serve", "--no-open", "--port", "0", "--cert", "cert.pem", "--key", "key.pem"];
+        let ran = told(&folder, &tls, lang);
+        assert!(ran.err.contains(pem), "{lang}: {}", ran.err);
+    }
+}

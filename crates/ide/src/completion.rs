@@ -1,11 +1,11 @@
 //! Completion: the words that are possible at a place of the text.
 
 use g7_model::words::{self, Told, Word};
-use g7_model::{Document, ProfileName, Qualifier, StandardFunction, Type};
+use g7_model::{Document, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, say};
 use g7_syntax::{Token, TokenKind};
 
 use crate::file::{File, floor};
-use crate::names::{Meaning, names};
+use crate::names::{Meaning, names, sort};
 use crate::tables::declaration;
 
 /// The possible words, and the place at which the word begins.
@@ -25,7 +25,7 @@ pub struct Choice {
     /// Its kind: `keyword`, `variable`, `step`, `chart`, `function`, `type`, `member`, …
     pub kind: &'static str,
     /// Its effect or its declaration.
-    pub detail: String,
+    pub detail: Said,
     /// The text that takes the place of the typed word.
     pub insert: String,
 }
@@ -62,7 +62,11 @@ pub fn complete(file: &File, at: usize) -> Completion {
     items.dedup();
     items.truncate(200);
     for item in &mut items {
-        item.detail = words::in_language(&item.detail, file.language).to_owned();
+        // The table of words tells the effect of a word of the language.
+        let told = words::in_language(&item.detail, file.language);
+        if told != item.detail.as_str() {
+            item.detail = Said::foreign(told);
+        }
     }
     Completion { from, items }
 }
@@ -98,7 +102,7 @@ impl Place<'_> {
             (TokenKind::Colon, _) if self.declares() => types(),
             (TokenKind::Arrow, _) => self.steps(),
             (_, "profile") => {
-                let one = |p: ProfileName| choice(p.name(), "profile", p.does()[0], p.name());
+                let one = |p: ProfileName| choice(p.name(), "profile", Said::foreign(p.does()[0]), p.name());
                 ProfileName::ALL.map(one).into()
             }
             (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout") => self.charts(),
@@ -209,13 +213,13 @@ impl Place<'_> {
             match n.meaning {
                 Meaning::Step(c, _) if *c.name.text == *owner => found.push(activity(name, &c.name.text)),
                 Meaning::Variable(v, Some(c)) if *c.name.text == *owner => {
-                    found.push(choice(name, "variable", &declaration(name, v), name));
+                    found.push(choice(name, "variable", declared(name, v), name));
                 }
                 Meaning::Variable(v, _) if name == owner => {
                     if let g7_model::Type::Fb(kind) = v.ty {
                         let member = |(m, ty, input): &(&str, g7_model::Type, bool)| {
-                            let what = if *input { "input" } else { "output" };
-                            choice(m, "member", &format!("{what} : {ty}"), m)
+                            let told = if *input { say!("input : {ty}") } else { say!("output : {ty}") };
+                            choice(m, "member", told, m)
                         };
                         found.extend(kind.members().iter().map(member));
                     }
@@ -239,32 +243,30 @@ impl Place<'_> {
 
     fn steps(&self) -> Vec<Choice> {
         let steps = self.here().into_iter().flat_map(|c| c.steps());
-        let comment = |s: &g7_model::Step| s.comment.as_deref().unwrap_or("").to_owned();
         steps
-            .map(|s| choice(&s.name.text, "step", &comment(s), &g7_syntax::show_step_name(&s.name.text)))
+            .map(|s| {
+                choice(
+                    &s.name.text,
+                    "step",
+                    comment(s.comment.as_deref()),
+                    &g7_syntax::show_step_name(&s.name.text),
+                )
+            })
             .collect()
     }
 
     fn charts(&self) -> Vec<Choice> {
         let shown = |c: &g7_model::Chart| {
-            choice(
-                &c.name.text,
-                "chart",
-                c.comment.as_deref().unwrap_or(""),
-                &g7_syntax::show_name(&c.name.text),
-            )
+            choice(&c.name.text, "chart", comment(c.comment.as_deref()), &g7_syntax::show_name(&c.name.text))
         };
         self.document.charts().map(shown).collect()
     }
 
     fn others(&self, what: &str) -> Vec<Choice> {
         let named = names(self.document).into_iter().filter_map(|n| match n.meaning {
-            Meaning::Other(w, comment) if w == what => Some(choice(
-                &n.name.text,
-                "plant",
-                comment.unwrap_or(""),
-                &g7_syntax::show_name(&n.name.text),
-            )),
+            Meaning::Other(w, told) if w == what => {
+                Some(choice(&n.name.text, "plant", comment(told), &g7_syntax::show_name(&n.name.text)))
+            }
             _ => None,
         });
         named.collect()
@@ -278,9 +280,7 @@ impl Place<'_> {
             let name = &*n.name.text;
             let shown = g7_syntax::show_name(name);
             match n.meaning {
-                Meaning::Variable(v, None) => {
-                    found.push(choice(name, "variable", &declaration(name, v), &shown))
-                }
+                Meaning::Variable(v, None) => found.push(choice(name, "variable", declared(name, v), &shown)),
                 Meaning::Variable(v, Some(c)) => {
                     let inside = here.as_ref() == Some(&c.name.text);
                     let path = if inside {
@@ -288,7 +288,7 @@ impl Place<'_> {
                     } else {
                         format!("{}.{shown}", g7_syntax::show_name(&c.name.text))
                     };
-                    found.push(choice(&path, "variable", &declaration(name, v), &path));
+                    found.push(choice(&path, "variable", declared(name, v), &path));
                 }
                 Meaning::Step(c, _) if here.as_ref() == Some(&c.name.text) => {
                     found.push(activity(name, &c.name.text))
@@ -298,7 +298,8 @@ impl Place<'_> {
                 Meaning::Other(what, comment) => {
                     if n.scope.is_none_or(|s| s.start <= self.at && self.at <= s.end) && what != "transition"
                     {
-                        found.push(choice(name, "name", comment.unwrap_or(what), &shown));
+                        let told = comment.map_or_else(|| sort(what), Said::foreign);
+                        found.push(choice(name, "name", told, &shown));
                     }
                 }
             }
@@ -314,7 +315,7 @@ fn activity(step: &str, chart: &str) -> Choice {
     } else {
         format!("{}.X", g7_syntax::show_name(step))
     };
-    choice(&text, "step", &format!("step {step} of {chart} is active"), &text)
+    choice(&text, "step", say!("step `{step}` of `{chart}` is active"), &text)
 }
 
 fn keywords(list: &[Word]) -> Vec<Choice> {
@@ -322,7 +323,7 @@ fn keywords(list: &[Word]) -> Vec<Choice> {
 }
 
 fn keyword(word: &str, [does, ..]: Told) -> Choice {
-    choice(word, "keyword", does, &format!("{word} "))
+    choice(word, "keyword", Said::foreign(does), &format!("{word} "))
 }
 
 /// The qualifiers, each with what it does.
@@ -335,20 +336,28 @@ fn types() -> Vec<Choice> {
     let often = [Type::Bool, Type::Int, Type::Real, Type::Time].map(Type::name);
     let does = |name: &str| Type::named(name).map_or("", |ty| words::of_type(ty)[0]);
     let others = Type::names().filter(|name| !often.contains(name));
-    often.into_iter().chain(others).map(|t| choice(t, "type", does(t), t)).collect()
+    often.into_iter().chain(others).map(|t| choice(t, "type", Said::foreign(does(t)), t)).collect()
 }
 
 fn functions() -> Vec<Choice> {
     let edges = words::VALUE.iter().filter(|w| !w.capitals).map(|w| (w.text, w.does[0]));
     let standard = StandardFunction::ALL.into_iter().map(|f| (f.row().name, f.row().does[0]));
-    let one = |(name, does): (&str, &str)| choice(name, "function", does, &format!("{name}("));
+    let one = |(name, does): (&str, &str)| choice(name, "function", Said::foreign(does), &format!("{name}("));
     edges.chain(standard).map(one).collect()
 }
 
 fn member(word: &Word) -> Choice {
-    choice(word.text, "member", word.does[0], word.text)
+    choice(word.text, "member", Said::foreign(word.does[0]), word.text)
 }
 
-fn choice(label: &str, kind: &'static str, detail: &str, insert: &str) -> Choice {
-    Choice { label: label.to_owned(), kind, detail: detail.to_owned(), insert: insert.to_owned() }
+fn comment(comment: Option<&str>) -> Said {
+    comment.map_or_else(Said::default, Said::foreign)
+}
+
+fn declared(name: &str, v: &VarDecl) -> Said {
+    Said::foreign(declaration(name, v))
+}
+
+fn choice(label: &str, kind: &'static str, detail: Said, insert: &str) -> Choice {
+    Choice { label: label.to_owned(), kind, detail, insert: insert.to_owned() }
 }

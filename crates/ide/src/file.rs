@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use g7_edit::{Edit, History, Splice, spliced};
-use g7_model::{Document, FileId, Item, Language, Problem, Severity, Span};
+use g7_model::{Document, FileId, Item, Language, Problem, Said, Severity, Span, say};
 use g7_rig::Source;
 
 use crate::positions::Positions;
@@ -33,7 +33,7 @@ const MOST: usize = 16 << 20;
 
 impl File {
     /// Reads a text; a file of a foreign format is converted to .g7 text.
-    pub fn open(name: &str, text: String) -> Result<File, String> {
+    pub fn open(name: &str, text: String) -> Result<File, Said> {
         fits(name, &text)?;
         let source = Source::new(name, text.into_bytes(), 0);
         match source.format {
@@ -43,7 +43,7 @@ impl File {
     }
 
     /// Reads the .g7 text that [`convert`] made of a foreign file, with the problems that it told.
-    pub fn imported(name: &str, text: String, told: Vec<Problem>) -> Result<File, String> {
+    pub fn imported(name: &str, text: String, told: Vec<Problem>) -> Result<File, Said> {
         fits(name, &text)?;
         let mut file = File::of(Source::native(name, text.into_bytes(), 0), true);
         file.problems.extend(told);
@@ -51,7 +51,7 @@ impl File {
     }
 
     /// Reads a .g7 text, whatever its name is.
-    pub fn open_native(name: &str, text: String) -> Result<File, String> {
+    pub fn open_native(name: &str, text: String) -> Result<File, Said> {
         fits(name, &text)?;
         Ok(File::of(Source::native(name, text.into_bytes(), 0), false))
     }
@@ -72,13 +72,13 @@ impl File {
     }
 
     /// Makes a change and records it for undo; typed characters are joined to words.
-    pub fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
+    pub fn change(&mut self, splices: &[Splice], typed: bool) -> Result<(), Said> {
         self.recorded(splices, typed)?;
         self.splice(splices)
     }
 
     /// Makes the change of a gesture. What the gesture has read of the new text is not read again.
-    pub fn make(&mut self, edit: &mut Edit) -> Result<(), String> {
+    pub fn make(&mut self, edit: &mut Edit) -> Result<(), Said> {
         self.recorded(&edit.splices, false)?;
         match edit.read.take() {
             Some(read) => {
@@ -91,31 +91,33 @@ impl File {
     }
 
     /// Records a change that is about to be made.
-    fn recorded(&mut self, splices: &[Splice], typed: bool) -> Result<(), String> {
+    fn recorded(&mut self, splices: &[Splice], typed: bool) -> Result<(), Said> {
         let more: usize = splices.iter().map(|s| s.insert.len()).sum();
         let less: usize = splices.iter().map(|s| s.end.saturating_sub(s.start)).sum();
         if (self.text().len() + more).saturating_sub(less) > MOST {
-            return Err("the text would be too large for the editor".to_owned());
+            return Err(too_large());
         }
         if !self.history.record(&self.source.text, splices, typed) {
-            return Err("these places are none of the text".to_owned());
+            return Err(say!("these places are none of the text"));
         }
         Ok(())
     }
 
     /// Takes another text, which an editor with an undo of its own has made.
-    pub fn take(&mut self, text: String) -> Result<(), String> {
-        fits("the text", &text)?;
+    pub fn take(&mut self, text: String) -> Result<(), Said> {
+        if text.len() > MOST {
+            return Err(too_large());
+        }
         let splice = difference(self.text(), &text);
         self.splice(&[splice])
     }
 
     /// Undoes the last change, or redoes it; returns the splices.
-    pub fn travel(&mut self, back: bool) -> Result<Vec<Splice>, String> {
+    pub fn travel(&mut self, back: bool) -> Result<Vec<Splice>, Said> {
         let splices = if back { self.history.undo() } else { self.history.redo() };
-        let nothing = if back { "nothing to undo" } else { "nothing to redo" };
-        let splices = splices.ok_or(nothing)?;
-        self.splice(&splices).map_err(|_| "the history does not fit the text")?;
+        let nothing = || if back { say!("nothing to undo") } else { say!("nothing to redo") };
+        let splices = splices.ok_or_else(nothing)?;
+        self.splice(&splices).map_err(|_| say!("the history does not fit the text"))?;
         Ok(splices)
     }
 
@@ -127,10 +129,10 @@ impl File {
 
     /// Changes the text. The form was decided when the file was opened: an imported file keeps its name,
     /// but its text is .g7 text now.
-    fn splice(&mut self, splices: &[Splice]) -> Result<(), String> {
+    fn splice(&mut self, splices: &[Splice]) -> Result<(), Said> {
         let edits: Vec<_> = splices.iter().map(|s| (s.start..s.end, s.insert.as_str())).collect();
         if !self.source.change(&edits) {
-            return Err("these places are none of the text".to_owned());
+            return Err(say!("these places are none of the text"));
         }
         self.changed();
         Ok(())
@@ -214,15 +216,17 @@ impl File {
 }
 
 /// Converts a foreign file: its .g7 text, and the problems that its reader found.
-pub fn convert(name: &str, text: String) -> Result<(String, Vec<Problem>), String> {
+pub fn convert(name: &str, text: String) -> Result<(String, Vec<Problem>), Said> {
     fits(name, &text)?;
     converted(Source::new(name, text.into_bytes(), 0))
 }
 
-fn converted(mut source: Source) -> Result<(String, Vec<Problem>), String> {
+fn converted(mut source: Source) -> Result<(String, Vec<Problem>), Said> {
     if source.has_errors() {
-        let why = source.problems.first().map_or(String::new(), |p| format!(": {}", p.what));
-        return Err(format!("{} cannot be imported{why}", source.name));
+        return Err(match source.problems.first() {
+            Some(first) => say!("`{}` cannot be imported: {}", source.name, first.what),
+            None => say!("`{}` cannot be imported", source.name),
+        });
     }
     g7_draw::make_room(&mut source.document);
     let text = g7_syntax::print(&source.document, None);
@@ -232,9 +236,13 @@ fn converted(mut source: Source) -> Result<(String, Vec<Problem>), String> {
     Ok((text, source.problems.into_iter().map(placeless).collect()))
 }
 
-/// Refuses a text that is too long, under the name of what it belongs to.
-fn fits(what: &str, text: &str) -> Result<(), String> {
-    if text.len() > MOST { Err(format!("{what} is too large for the editor")) } else { Ok(()) }
+fn too_large() -> Said {
+    say!("the text would be too large for the editor")
+}
+
+/// Refuses a file whose text is too long.
+fn fits(name: &str, text: &str) -> Result<(), Said> {
+    if text.len() > MOST { Err(say!("`{name}` is too large for the editor")) } else { Ok(()) }
 }
 
 /// The one change that leads from a text to another: what lies between their common beginning and their

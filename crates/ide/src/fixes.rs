@@ -1,7 +1,7 @@
 //! Changes that fix a problem; offered only if they certainly do.
 
 use g7_edit::{Gesture, ItemId, Row, Splice};
-use g7_model::{Problem, TextEdit, codes};
+use g7_model::{Problem, Said, TextEdit, codes, say};
 
 use crate::file::File;
 use crate::gestures::draft;
@@ -23,7 +23,7 @@ pub fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
         let gestures = gestures(file, p);
         found.extend(gestures.into_iter().filter_map(|(title, gesture)| {
             let edit = draft(file, &gesture).ok()?;
-            Some(Fix { title, splices: edit.splices })
+            Some(Fix { title: title.in_language(file.language), splices: edit.splices })
         }));
     }
     found
@@ -44,7 +44,7 @@ fn carried(file: &File, p: &Problem) -> Vec<Fix> {
 }
 
 /// Gestures that may fix the problem, each with its title.
-fn gestures(file: &File, p: &Problem) -> Vec<(String, Gesture)> {
+fn gestures(file: &File, p: &Problem) -> Vec<(Said, Gesture)> {
     let document = &file.source.document;
     let thing = || ids::at(document, p.at);
     let transition = || match thing() {
@@ -55,33 +55,33 @@ fn gestures(file: &File, p: &Problem) -> Vec<(String, Gesture)> {
     if p.code == &codes::UNUSED_VARIABLE {
         let of = document.charts().find(|c| ids::holds(c.at.0, p.at));
         let name = of.map_or(there.to_owned(), |c| format!("{}.{there}", c.name.text));
-        return vec![(format!("delete `{there}`"), Gesture::DeleteVariable { name })];
+        return vec![(say!("delete `{there}`"), Gesture::DeleteVariable { name })];
     }
     if p.code == &codes::PRIORITY_IGNORED
         && p.help.as_deref() == Some("leave the number out")
         && let Some(id) = transition()
     {
-        return vec![("leave the number out".to_owned(), Gesture::Priority { id, n: None })];
+        return vec![(say!("leave the number out"), Gesture::Priority { id, n: None })];
     }
     if p.code == &codes::SAME_TRANSITION
         && let Some(id) = transition()
     {
-        return vec![("delete this transition".to_owned(), Gesture::Delete { ids: vec![id], heal: false })];
+        return vec![(say!("delete this transition"), Gesture::Delete { ids: vec![id], heal: false })];
     }
     if p.code == &codes::UNKNOWN_NAME && is_name(there) && *p.what == format!("nothing is called `{there}`") {
-        let declared = |class: &str, what: &str| {
+        let declared = |class: &str, title: Said| {
             let row = Row {
                 name: there.to_owned(),
                 class: class.to_owned(),
                 ty: "BOOL".to_owned(),
                 ..Row::default()
             };
-            (format!("declare `{there}` as {what}"), Gesture::Variable { name: None, row })
+            (title, Gesture::Variable { name: None, row })
         };
         return vec![
-            declared("input", "an input"),
-            declared("output", "an output"),
-            declared("var", "a variable"),
+            declared("input", say!("declare `{there}` as an input")),
+            declared("output", say!("declare `{there}` as an output")),
+            declared("var", say!("declare `{there}` as a variable")),
         ];
     }
     Vec::new()

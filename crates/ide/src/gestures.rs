@@ -6,14 +6,14 @@ use std::collections::HashMap;
 
 use g7_draw::Options;
 use g7_edit::{Edit, Gesture, ItemId};
-use g7_model::Document;
+use g7_model::{Document, Said};
 
 use crate::file::File;
 
 /// The change that a gesture would make.
-pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, String> {
+pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
     let stand = standing(&file.source.document);
-    g7_edit::apply_placed(&file.as_edited(), gesture, &stand).map_err(|e| e.in_language(file.language))
+    Ok(g7_edit::apply_placed(&file.as_edited(), gesture, &stand)?)
 }
 
 /// A part of a chart as text, with the places of its symbols.

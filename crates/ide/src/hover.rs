@@ -2,12 +2,12 @@
 
 use std::ops::Range;
 
-use g7_model::{ChartKind, Language, Problem, Qualifier, Said, StandardFunction, Type, say, words};
+use g7_model::{Language, Problem, Qualifier, Said, StandardFunction, Type, say, words};
 
 use crate::file::File;
-use crate::names::{Meaning, Named, meaning, word_at};
+use crate::names::{Meaning, Named, meaning, sort, word_at};
 use crate::rules;
-use crate::tables::declaration;
+use crate::tables::{declaration, kind};
 
 /// An explanation of a piece of the text.
 #[derive(Debug)]
@@ -104,32 +104,11 @@ fn describe(n: &Named<'_>, language: Language) -> String {
         }
         Meaning::Chart(c) => {
             let (steps, transitions) = (c.steps().count(), c.transitions().count());
-            let kind = match c.kind {
-                ChartKind::Chart => say!("chart"),
-                ChartKind::Expansion => say!("expansion"),
-                ChartKind::Task => say!("task"),
-            };
+            let kind = kind(c.kind);
             let head = say!("{kind} `{name}`: {steps} steps, {transitions} transitions");
             with(head, c.comment.as_deref())
         }
         Meaning::Other(what, comment) => with(say!("{} `{name}`", sort(what)), comment),
-    }
-}
-
-/// The word for the kind of a name (see [`crate::names`]).
-fn sort(what: &'static str) -> Said {
-    match what {
-        "action" => say!("action"),
-        "transition section" => say!("transition section"),
-        "function" => say!("function"),
-        "parameter" => say!("parameter"),
-        "plant" => say!("plant"),
-        "transition" => say!("transition"),
-        "constant of the plant" => say!("constant of the plant"),
-        "state of the plant" => say!("state of the plant"),
-        "parts of the plant" => say!("parts of the plant"),
-        "arrivals of the plant" => say!("arrivals of the plant"),
-        other => Said::foreign(other),
     }
 }
 

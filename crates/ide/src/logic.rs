@@ -5,7 +5,8 @@ use g7_compile::symbols::Symbols;
 use g7_draw::{Element, Rung};
 use g7_iec::ld::{self, Coil};
 use g7_model::{
-    ActionKind, Document, Expr, ExprKind, FileId, Item, Path, Stmt, StmtKind, Target, Type, UnaryOp, Work,
+    ActionKind, Document, Expr, ExprKind, FileId, Item, Path, Said, Stmt, StmtKind, Target, Type, UnaryOp,
+    Work, say,
 };
 use g7_syntax::{il, ladder, print_expr, print_statements};
 
@@ -59,10 +60,10 @@ pub struct Form {
 }
 
 /// The logic of a transition, of an action, or of all actions of a step.
-pub fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
+pub fn logic(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
     let document = &file.source.document;
     let (_, thing) =
-        ids::things(document).find(|(_, t)| t.id() == id).ok_or_else(|| format!("there is no `{id}`"))?;
+        ids::things(document).find(|(_, t)| t.id() == id).ok_or_else(|| say!("there is no `{id}`"))?;
     let symbols = g7_compile::compile(document).0.map(|c| c.symbols);
     let boolean = |e: &Expr| is_boolean(e, symbols.as_ref());
     let show = Show { document, boolean: &boolean };
@@ -82,7 +83,7 @@ pub fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
 }
 
 /// Reads a condition in one of the languages and returns it as an expression of a .g7 text.
-pub fn read(tongue: Tongue, text: &str) -> Result<String, String> {
+pub fn read(tongue: Tongue, text: &str) -> Result<String, Said> {
     let (expr, problems) = match tongue {
         Tongue::St => g7_syntax::parse_expr(text, FileId(0)),
         Tongue::Il => il::expression(text, FileId(0)),
@@ -92,9 +93,9 @@ pub fn read(tongue: Tongue, text: &str) -> Result<String, String> {
         Some(p) => {
             let before = text.get(..p.at.start as usize).unwrap_or(text);
             let line = before.matches('\n').count() + 1;
-            Err(format!("line {line}: {}", p.what))
+            Err(say!("line {line}: {}", p.what))
         }
-        None if matches!(expr.kind, ExprKind::Bad) => Err("there is no logic in this text".to_owned()),
+        None if matches!(expr.kind, ExprKind::Bad) => Err(say!("there is no logic in this text")),
         None => Ok(print_expr(&expr)),
     }
 }

@@ -1,6 +1,6 @@
 //! The names that a document defines, and their meaning.
 
-use g7_model::{Chart, ChartItem, Document, Item, Name, PlantItem, Span, Step, VarDecl};
+use g7_model::{Chart, ChartItem, Document, Item, Name, PlantItem, Said, Span, Step, VarDecl, say};
 use g7_syntax::{Token, TokenKind};
 
 /// The meaning of a name.
@@ -180,4 +180,21 @@ pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>>
         Some(_) => 2,
     };
     found.into_iter().min_by_key(rank).filter(|n| !number || rank(n) == 0)
+}
+
+/// The word for the kind of a name ([`Meaning::Other`]).
+pub fn sort(what: &'static str) -> Said {
+    match what {
+        "action" => say!("action"),
+        "transition section" => say!("transition section"),
+        "function" => say!("function"),
+        "parameter" => say!("parameter"),
+        "plant" => say!("plant"),
+        "transition" => say!("transition"),
+        "constant of the plant" => say!("constant of the plant"),
+        "state of the plant" => say!("state of the plant"),
+        "parts of the plant" => say!("parts of the plant"),
+        "arrivals of the plant" => say!("arrivals of the plant"),
+        other => Said::foreign(other),
+    }
 }

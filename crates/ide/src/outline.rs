@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
-use g7_model::{Chart, ChartItem, Document, Item, Name, Plant, PlantItem, Property, Span, VarDecl};
+use g7_model::{
+    Chart, ChartItem, Document, Item, Name, Plant, PlantItem, Property, Said, Span, VarDecl, say,
+};
 
 use crate::file::Readable;
 use crate::tables::{class, declaration, kind};
@@ -34,7 +36,7 @@ pub struct Entry {
     /// Its kind.
     pub kind: Kind,
     /// Its comment or declaration; may be empty.
-    pub detail: String,
+    pub detail: Said,
     /// The bytes of the whole item.
     pub range: Range<usize>,
     /// The bytes of its name.
@@ -54,11 +56,11 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
         Item::Var(v) => variables(v),
         Item::Chart(c) => vec![chart(c)],
         Item::Action(a) => {
-            vec![entry(&a.name, Kind::Function, a.comment.as_deref().unwrap_or("action"), a.at.0)]
+            vec![entry(&a.name, Kind::Function, detail(a.comment.as_deref(), || say!("action")), a.at.0)]
         }
-        Item::Section(s) => vec![entry(&s.name, Kind::Function, "transition section", s.at.0)],
+        Item::Section(s) => vec![entry(&s.name, Kind::Function, say!("transition section"), s.at.0)],
         Item::Function(f) => {
-            vec![entry(&f.name, Kind::Function, &format!("function : {}", f.result), f.at.0)]
+            vec![entry(&f.name, Kind::Function, say!("function : {}", f.result), f.at.0)]
         }
         Item::Plant(p) => vec![plant(p)],
         Item::Test(t) => vec![titled(t.title.to_string(), t.at.0)],
@@ -82,54 +84,60 @@ fn chart(c: &Chart) -> Entry {
     let inside = c.items.iter().flat_map(|item| match item {
         ChartItem::Var(v) => variables(v),
         ChartItem::Step(s) => {
-            let detail = s.comment.as_deref().unwrap_or(if s.initial { "initial step" } else { "step" });
-            vec![entry(&s.name, Kind::Step, detail, s.at.0)]
+            let plain = || if s.initial { say!("initial step") } else { say!("step") };
+            vec![entry(&s.name, Kind::Step, detail(s.comment.as_deref(), plain), s.at.0)]
         }
         ChartItem::Transition(t) => {
-            let label = t.label.iter();
-            label.map(|l| entry(l, Kind::Transition, t.comment.as_deref().unwrap_or(""), t.at.0)).collect()
+            let told = || detail(t.comment.as_deref(), Said::default);
+            t.label.iter().map(|l| entry(l, Kind::Transition, told(), t.at.0)).collect()
         }
         ChartItem::Action(a) => {
-            vec![entry(&a.name, Kind::Function, a.comment.as_deref().unwrap_or("action"), a.at.0)]
+            vec![entry(&a.name, Kind::Function, detail(a.comment.as_deref(), || say!("action")), a.at.0)]
         }
-        ChartItem::Section(s) => vec![entry(&s.name, Kind::Function, "transition section", s.at.0)],
+        ChartItem::Section(s) => vec![entry(&s.name, Kind::Function, say!("transition section"), s.at.0)],
         ChartItem::Pre(..) | ChartItem::Post(..) => Vec::new(),
     });
-    let own = entry(&c.name, Kind::Chart, c.comment.as_deref().unwrap_or(kind(c.kind)), c.at.0);
+    let own = entry(&c.name, Kind::Chart, detail(c.comment.as_deref(), || kind(c.kind)), c.at.0);
     Entry { inside: inside.collect(), ..own }
 }
 
 fn plant(p: &Plant) -> Entry {
     let inside = p.items.iter().flat_map(|item| match item {
         PlantItem::Const { names, at, .. } => {
-            names.iter().map(|n| entry(n, Kind::Variable, "const", at.0)).collect()
+            names.iter().map(|n| entry(n, Kind::Variable, Said::foreign("const"), at.0)).collect()
         }
-        PlantItem::State(s) => s.names.iter().map(|n| entry(n, Kind::Variable, "state", s.at.0)).collect(),
-        PlantItem::Parts(x) => vec![entry(&x.name, Kind::Variable, "parts", x.at.0)],
-        PlantItem::Arrivals(a) => vec![entry(&a.name, Kind::Variable, "arrivals", a.at.0)],
+        PlantItem::State(s) => {
+            s.names.iter().map(|n| entry(n, Kind::Variable, say!("state of the plant"), s.at.0)).collect()
+        }
+        PlantItem::Parts(x) => vec![entry(&x.name, Kind::Variable, say!("parts of the plant"), x.at.0)],
+        PlantItem::Arrivals(a) => vec![entry(&a.name, Kind::Variable, say!("arrivals of the plant"), a.at.0)],
         PlantItem::Rate(_)
         | PlantItem::Drive(_)
         | PlantItem::On(..)
         | PlantItem::Each(..)
         | PlantItem::View(_) => Vec::new(),
     });
-    let own = entry(&p.name, Kind::Plant, p.comment.as_deref().unwrap_or("plant"), p.at.0);
+    let own = entry(&p.name, Kind::Plant, detail(p.comment.as_deref(), || say!("plant")), p.at.0);
     Entry { inside: inside.collect::<Vec<_>>(), ..own }
 }
 
 fn variables(v: &VarDecl) -> Vec<Entry> {
-    let detail = |name: &Name| match &v.comment {
-        Some(comment) => comment.to_string(),
-        None => declaration(&name.text, v).trim_start_matches(class(v.kind)).trim().to_owned(),
-    };
-    v.names.iter().map(|n| entry(n, Kind::Variable, &detail(n), v.at.0)).collect()
+    let declared =
+        |name: &Name| Said::foreign(declaration(&name.text, v).trim_start_matches(class(v.kind)).trim());
+    let told = |name: &Name| detail(v.comment.as_deref(), || declared(name));
+    v.names.iter().map(|n| entry(n, Kind::Variable, told(n), v.at.0)).collect()
 }
 
-fn entry(name: &Name, kind: Kind, detail: &str, at: Span) -> Entry {
+/// The comment of an item, or what stands in its place.
+fn detail(comment: Option<&str>, plain: impl FnOnce() -> Said) -> Said {
+    comment.map_or_else(plain, Said::foreign)
+}
+
+fn entry(name: &Name, kind: Kind, detail: Said, at: Span) -> Entry {
     let (range, named) = (at.bytes(), name.at.0.bytes());
     // A name lies inside its item, also where several names share a declaration.
     let named = if range.start <= named.start && named.end <= range.end { named } else { range.clone() };
-    Entry { name: name.text.to_string(), kind, detail: detail.to_owned(), range, named, inside: Vec::new() }
+    Entry { name: name.text.to_string(), kind, detail, range, named, inside: Vec::new() }
 }
 
 fn titled(name: String, at: Span) -> Entry {
@@ -137,7 +145,7 @@ fn titled(name: String, at: Span) -> Entry {
     Entry {
         name,
         kind: Kind::Test,
-        detail: String::new(),
+        detail: Said::default(),
         range: at.bytes(),
         named: at.bytes(),
         inside: Vec::new(),

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use g7_edit::Splice;
-use g7_model::Span;
+use g7_model::{Said, Span};
 
 use crate::file::File;
 use crate::names::{meaning, word_at};
@@ -44,7 +44,7 @@ fn spelled(file: &File, at: usize) -> Option<Uses> {
 /// The name at a byte that can be changed: its place, and its spelling without back-ticks.
 pub fn changeable(file: &File, at: usize) -> Option<(Range<usize>, String)> {
     let known = g7_compile::references(&file.source.document);
-    let found = known.use_at(offset(at)).filter(|_| file.is_clean())?;
+    let found = known.use_at(offset(at))?;
     let whole = found.at.bytes();
     let name = whole.start + found.before..whole.end;
     let text = file.text().get(name.clone())?;
@@ -52,10 +52,8 @@ pub fn changeable(file: &File, at: usize) -> Option<(Range<usize>, String)> {
 }
 
 /// The change that gives the part named at a byte another name, or why it cannot have it.
-pub fn rename(file: &File, at: usize, to: &str) -> Result<Vec<Splice>, String> {
-    g7_edit::rename_at(&file.as_edited(), at, to)
-        .map(|edit| edit.splices)
-        .map_err(|e| e.in_language(file.language))
+pub fn rename(file: &File, at: usize, to: &str) -> Result<Vec<Splice>, Said> {
+    Ok(g7_edit::rename_at(&file.as_edited(), at, to)?.splices)
 }
 
 fn offset(at: usize) -> u32 {

@@ -1,6 +1,6 @@
 //! The tables of variables and steps.
 
-use g7_model::{ChartKind, Document, Span, Type, VarDecl, VarKind};
+use g7_model::{ChartKind, Document, Said, Span, Type, VarDecl, VarKind, say};
 
 use crate::file::Readable;
 use crate::ids;
@@ -64,11 +64,11 @@ pub struct Step {
 }
 
 /// The word for a kind of chart.
-pub fn kind(kind: ChartKind) -> &'static str {
+pub fn kind(kind: ChartKind) -> Said {
     match kind {
-        ChartKind::Chart => "chart",
-        ChartKind::Expansion => "expansion",
-        ChartKind::Task => "task",
+        ChartKind::Chart => say!("chart"),
+        ChartKind::Expansion => say!("expansion"),
+        ChartKind::Task => say!("task"),
     }
 }
 

@@ -22,6 +22,9 @@ pub trait Visitor<'d> {
     /// An order to another chart.
     fn order(&mut self, order: &'d Order);
 
+    /// A value that is written out.
+    fn value(&mut self, _at: Span) {}
+
     /// The text of a body in another language than Structured Text.
     fn foreign(&mut self, _text: &'d str) {}
 
@@ -79,7 +82,8 @@ pub trait Visitor<'d> {
     /// An expression.
     fn expr(&mut self, e: &'d Expr) {
         match &e.kind {
-            ExprKind::Literal(_) | ExprKind::Bad => {}
+            ExprKind::Literal(_) => self.value(e.at.0),
+            ExprKind::Bad => {}
             ExprKind::Direct(text) => self.direct(text, e.at.0),
             ExprKind::Path(path) => self.path(&path.names),
             ExprKind::Unary(_, a) => self.expr(a),

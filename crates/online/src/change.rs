@@ -57,7 +57,9 @@ pub struct Prepared {
 pub fn prepare(old: Chart<'_>, new: Chart<'_>, picture: &Picture) -> Result<Prepared, String> {
     fits(old, new)?;
     let Carried { mut runner, lost } =
-        g7_rig::carry((new.bench, new.document), (old.bench, old.document), &picture.runner)?;
+        g7_rig::carry((new.bench, new.document), (old.bench, old.document), &picture.runner)
+            .map_err(|e| e.to_string())?;
+    let lost = lost.iter().map(ToString::to_string).collect();
     if let Some(coupling) = coupling(new.bench, new.wiring) {
         runner.couple(coupling);
     }

@@ -28,8 +28,8 @@ pub(crate) const FOREIGN: &str = "the other module reads this file";
 
 /// Refuses what only the whole program can answer: `if !WHOLE { return not_here(); }`. The first module never runs
 /// the code after this line, so the compiler removes that code, and everything that only it uses.
-pub(crate) fn not_here<T>() -> Result<T, String> {
-    Err(ELSEWHERE.to_owned())
+pub(crate) fn not_here<T>() -> Result<T, Said> {
+    Err(Said::foreign(ELSEWHERE))
 }
 
 /// A message from the other module. It has the word `between` in the place of `do`.
@@ -57,7 +57,7 @@ impl Lent {
     }
 
     /// The file with its text.
-    pub(crate) fn file(&self, language: Language) -> Result<File, String> {
+    pub(crate) fn file(&self, language: Language) -> Result<File, Said> {
         let mut file = File::open_native(&self.file, self.text.clone())?;
         file.language = language;
         Ok(file)
@@ -67,16 +67,16 @@ impl Lent {
 /// Says that the second module answers, by which message, about which files.
 pub(crate) fn elsewhere(by: &str, files: Vec<Lent>) -> Answer {
     let there = serde_json::json!({ "elsewhere": { "as": by, "files": files } });
-    serde_json::to_string(&there).map_err(|e| e.to_string())
+    serde_json::to_string(&there).map_err(|e| Said::foreign(e.to_string()))
 }
 
 /// Opens a text.
-pub(crate) fn open(name: &str, text: String) -> Result<File, String> {
+pub(crate) fn open(name: &str, text: String) -> Result<File, Said> {
     if WHOLE {
         return File::open(name, text);
     }
     if g7_exchange::is_foreign(name, text.as_bytes()) {
-        return Err(FOREIGN.to_owned());
+        return Err(Said::foreign(FOREIGN));
     }
     File::open_native(name, text)
 }
@@ -102,7 +102,7 @@ struct Told {
 }
 
 /// Converts a foreign file.
-pub(crate) fn import(Lent { file, text }: Lent, language: Language) -> Result<Imported, String> {
+pub(crate) fn import(Lent { file, text }: Lent, language: Language) -> Result<Imported, Said> {
     let (text, problems) = convert(&file, text)?;
     let told = problems.iter().map(|p| Told {
         code: p.code.id.to_owned(),
@@ -114,7 +114,7 @@ pub(crate) fn import(Lent { file, text }: Lent, language: Language) -> Result<Im
 
 impl Imported {
     /// Opens the text under the name of the foreign file.
-    pub(crate) fn file(self) -> Result<(String, File), String> {
+    pub(crate) fn file(self) -> Result<(String, File), Said> {
         let at = Span { file: FileId(0), start: 0, end: 0 };
         let problem = |told: Told| {
             let help = told.help.map(Said::foreign);

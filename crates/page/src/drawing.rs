@@ -6,7 +6,7 @@ use g7_draw::{End, Look, Options, Rect};
 use g7_edit::{ChartSort, ItemId, Sort};
 use g7_ide::ids;
 use g7_ide::{File, Readable};
-use g7_model::{ActionKind, Chart, ChartKind, Order, Step, StepKind, Transition};
+use g7_model::{ActionKind, Chart, ChartKind, Order, Said, Step, StepKind, Transition, say};
 use serde::{Deserialize, Serialize};
 
 /// The standard whose symbols are drawn.
@@ -151,12 +151,15 @@ impl Item {
 }
 
 /// Draws a chart of a file.
-pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
+pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
     let readable = file.drawn_chart(&wish.chart);
     let options = options(wish);
     let find = |c: &&Chart| *c.name.text == *wish.chart;
-    let chart =
-        readable.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
+    let chart = readable
+        .document
+        .charts()
+        .find(find)
+        .ok_or_else(|| say!("there is no chart `{name}`", name = wish.chart))?;
     let drawing = g7_draw::draw(&readable.document, chart, &options);
     let names = Names::new(&readable, chart);
     Ok(Drawn {

@@ -3,6 +3,7 @@
 use g7_edit::{Gesture, ItemId};
 use g7_ide::File;
 use g7_ide::gestures::draft;
+use g7_model::{Said, say};
 use serde::Serialize;
 
 use crate::overview::{Overview, overview};
@@ -24,7 +25,7 @@ pub(crate) struct Edited {
 }
 
 /// Executes a gesture.
-pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edited, String> {
+pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edited, Said> {
     let mut edit = draft(file, gesture)?;
     if edit.splices.is_empty() {
         return Ok(Edited {
@@ -32,7 +33,7 @@ pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edi
             splices: Vec::new(),
             select: edit.select,
             begin: edit.begin,
-            told: edit.told,
+            told: edit.told.iter().map(|t| t.in_language(file.language)).collect(),
         });
     }
     let splices = outward(file, &edit.splices);
@@ -42,12 +43,12 @@ pub(crate) fn edit(name: &str, file: &mut File, gesture: &Gesture) -> Result<Edi
         splices,
         select: edit.select,
         begin: edit.begin,
-        told: edit.told,
+        told: edit.told.iter().map(|t| t.in_language(file.language)).collect(),
     })
 }
 
 /// Undoes the last change, or redoes it.
-pub(crate) fn travel(name: &str, file: &mut File, back: bool) -> Result<Edited, String> {
+pub(crate) fn travel(name: &str, file: &mut File, back: bool) -> Result<Edited, Said> {
     let before = std::sync::Arc::clone(&file.positions);
     let text = file.text().to_owned();
     let splices = file.travel(back)?;
@@ -56,8 +57,9 @@ pub(crate) fn travel(name: &str, file: &mut File, back: bool) -> Result<Edited, 
 }
 
 /// Formats the text.
-pub(crate) fn format(name: &str, file: &mut File) -> Result<Edited, String> {
-    let splices = g7_ide::format(file).ok_or("the text has syntax errors: correct them first".to_owned())?;
+pub(crate) fn format(name: &str, file: &mut File) -> Result<Edited, Said> {
+    let splices =
+        g7_ide::format(file).ok_or_else(|| say!("the text has syntax errors; correct them first"))?;
     let out = outward(file, &splices);
     if !splices.is_empty() {
         file.change(&splices, false)?;

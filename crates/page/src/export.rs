@@ -9,7 +9,7 @@ use g7_engine::StepId;
 use g7_exchange::FORMATS;
 use g7_ide::File;
 use g7_ide::ids::{self, Thing};
-use g7_model::{Problem, Severity, Span};
+use g7_model::{Problem, Said, Severity, Span, say};
 use serde::Serialize;
 
 use crate::problems::{Row, row};
@@ -115,9 +115,9 @@ pub(crate) fn forms() -> Vec<Form> {
 }
 
 /// Exports a file in another form.
-pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
+pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, Said> {
     if let Some(first) = file.problems.iter().find(|p| p.severity() == Severity::Error) {
-        return Err(format!("the chart has errors: {}", first.what));
+        return Err(say!("the chart has errors: {}", first.what));
     }
     let stem = stem(name);
     if to == "svg" {
@@ -126,7 +126,7 @@ pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, String> {
     if let Some(found) = Code::all().find(|code| code.word() == to) {
         return code(file, stem, found);
     }
-    let unknown = || format!("there is no form `{to}`");
+    let unknown = || say!("there is no form `{to}`");
     let format = g7_exchange::named(to).ok_or_else(unknown)?;
     let written = format.write(&file.source.document).ok_or_else(unknown)?;
     let name = format!("{stem}.{}", format.ending());
@@ -152,9 +152,9 @@ fn out(file: &File, files: Vec<(String, String)>, problems: &[Problem]) -> Out {
 }
 
 /// Generates code for a controller and marks the lines of each step.
-fn code(file: &File, name: &str, code: Code) -> Result<Out, String> {
+fn code(file: &File, name: &str, code: Code) -> Result<Out, Said> {
     let (compiled, _) = g7_compile::compile(&file.source.document);
-    let compiled = compiled.ok_or("the chart has errors")?;
+    let compiled = compiled.ok_or_else(|| say!("the chart has errors"))?;
     let symbols = &compiled.symbols;
     let printed = match code {
         Code::Native(language) => {

@@ -1,7 +1,7 @@
 //! Answers to the text view, in the form in which they are sent.
 
 use g7_ide::{File, completion, hover, logic, references, search, tables, tokens};
-use g7_model::VarKind;
+use g7_model::{Said, VarKind};
 use serde::{Deserialize, Serialize};
 
 use crate::places::units;
@@ -25,8 +25,12 @@ struct Choice {
 
 pub(crate) fn complete(file: &File, at: usize) -> Completion {
     let found = completion::complete(file, byte(file, at));
-    let choice =
-        |c: completion::Choice| Choice { label: c.label, kind: c.kind, detail: c.detail, insert: c.insert };
+    let choice = |c: completion::Choice| Choice {
+        label: c.label,
+        kind: c.kind,
+        detail: c.detail.in_language(file.language),
+        insert: c.insert,
+    };
     Completion {
         from: file.positions.unit(file.text(), found.from),
         items: found.items.into_iter().map(choice).collect(),
@@ -220,7 +224,7 @@ struct Form {
     picture: Option<String>,
 }
 
-pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
+pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
     let form = |f: logic::Form| Form {
         tongue: match f.tongue {
             logic::Tongue::St => Tongue::St,
@@ -243,7 +247,7 @@ pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, String> {
     Ok(logic::logic(file, id)?.into_iter().map(piece).collect())
 }
 
-pub(crate) fn logic_read(tongue: Tongue, text: &str) -> Result<String, String> {
+pub(crate) fn logic_read(tongue: Tongue, text: &str) -> Result<String, Said> {
     let tongue = match tongue {
         Tongue::St => logic::Tongue::St,
         Tongue::Il => logic::Tongue::Il,

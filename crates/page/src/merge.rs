@@ -3,7 +3,7 @@
 //! A merged text contains exactly the changes of both sides. If this is not certain, there is no
 //! merged text; a text with conflict marks is never made.
 
-use g7_model::{FileId, Severity};
+use g7_model::{FileId, Said, Severity, say};
 use serde::Serialize;
 
 /// The result of a merge.
@@ -23,9 +23,9 @@ const MOST_LINES: usize = 6_000;
 const MOST_BYTES: usize = 4 << 20;
 
 /// Merges the changes that lead from `base` to `mine` and from `base` to `theirs`.
-pub(crate) fn merge(base: &str, mine: &str, theirs: &str) -> Result<Merged, String> {
+pub(crate) fn merge(base: &str, mine: &str, theirs: &str) -> Result<Merged, Said> {
     if [base, mine, theirs].iter().any(|t| t.len() > MOST_BYTES) {
-        return Err("these texts are too long to be merged".to_owned());
+        return Err(say!("these texts are too long to be merged"));
     }
     if mine == theirs || theirs == base {
         return Ok(Merged { text: Some(mine.to_owned()), conflicts: 0 });
@@ -34,7 +34,7 @@ pub(crate) fn merge(base: &str, mine: &str, theirs: &str) -> Result<Merged, Stri
         return Ok(Merged { text: Some(theirs.to_owned()), conflicts: 0 });
     }
     if [mine, theirs].iter().any(|t| differing(base, t) > MOST_LINES) {
-        return Err("these texts differ too much to be merged".to_owned());
+        return Err(say!("these texts differ too much to be merged"));
     }
     match diffy::merge(base, mine, theirs) {
         Ok(text) if broken(&text) && !broken(mine) && !broken(theirs) => {

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use g7_edit::{Gesture, ItemId};
 use g7_ide::File;
 use g7_ide::gestures;
-use g7_model::Language;
+use g7_model::{Language, Said, say};
 
 use crate::answer::{self, Answer, Before, Breaks, Style, Text, ok};
 use crate::between::{self, Between, Lent, WHOLE};
@@ -32,6 +32,14 @@ pub struct Page {
     language: Language,
 }
 
+fn not_open(file: &str) -> Said {
+    say!("{} is not open", Said::foreign(file))
+}
+
+fn no_run(name: &str) -> Said {
+    say!("there is no run `{name}`")
+}
+
 /// Greatest number of open files, and of runs.
 const MOST: usize = 64;
 
@@ -47,21 +55,21 @@ impl Page {
             Ok(request) => self.here_or_there(request),
             Err(e) => match serde_json::from_str(message) {
                 Ok(between) => self.between(between),
-                Err(_) => Err(format!("this message means nothing: {e}")),
+                Err(_) => Err(Said::foreign(format!("this message means nothing: {e}"))),
             },
         };
-        answer::text(answer)
+        answer::text(answer.map_err(|no| no.in_language(self.language)))
     }
 
     /// Answers a request, or says that the other module does.
     fn here_or_there(&mut self, request: Request) -> Answer {
         let names = request.files();
         match self.answer(request) {
-            Err(no) if no == between::ELSEWHERE => {
+            Err(no) if &*no == between::ELSEWHERE => {
                 let lent = names.iter().map(|name| Ok(Lent::new(name, self.file(name)?)));
-                between::elsewhere("about", lent.collect::<Result<_, String>>()?)
+                between::elsewhere("about", lent.collect::<Result<_, Said>>()?)
             }
-            Err(no) if no == between::FOREIGN => between::elsewhere("import", Vec::new()),
+            Err(no) if &*no == between::FOREIGN => between::elsewhere("import", Vec::new()),
             answer => answer,
         }
     }
@@ -94,9 +102,9 @@ impl Page {
     }
 
     /// Takes a file among those that are open.
-    fn put(&mut self, name: String, mut file: File) -> Result<Overview, String> {
+    fn put(&mut self, name: String, mut file: File) -> Result<Overview, Said> {
         if self.files.len() >= MOST && !self.files.contains_key(&name) {
-            return Err("too many files are open: close one".to_owned());
+            return Err(say!("too many files are open; close one"));
         }
         file.language = self.language;
         let name = if file.imported { with_ending(&name) } else { name };
@@ -104,20 +112,20 @@ impl Page {
         self.look(name)
     }
 
-    fn file(&self, name: &str) -> Result<&File, String> {
-        self.files.get(name).ok_or_else(|| format!("{name} is not open"))
+    fn file(&self, name: &str) -> Result<&File, Said> {
+        self.files.get(name).ok_or_else(|| not_open(name))
     }
 
-    fn file_mut(&mut self, name: &str) -> Result<&mut File, String> {
-        self.files.get_mut(name).ok_or_else(|| format!("{name} is not open"))
+    fn file_mut(&mut self, name: &str) -> Result<&mut File, Said> {
+        self.files.get_mut(name).ok_or_else(|| not_open(name))
     }
 
-    fn run(&mut self, name: &str) -> Result<&mut Run, String> {
-        self.runs.get_mut(name).ok_or_else(|| format!("there is no run `{name}`"))
+    fn run(&mut self, name: &str) -> Result<&mut Run, Said> {
+        self.runs.get_mut(name).ok_or_else(|| no_run(name))
     }
 
     /// Executes a change of the history.
-    fn travel(&mut self, name: &str, back: bool) -> Result<Edited, String> {
+    fn travel(&mut self, name: &str, back: bool) -> Result<Edited, Said> {
         edit::travel(name, self.file_mut(name)?, back)
     }
 
@@ -126,8 +134,8 @@ impl Page {
         &mut self,
         name: &str,
         times: bool,
-        work: impl FnOnce(&mut Run) -> Result<(), String>,
-    ) -> Result<Frame, String> {
+        work: impl FnOnce(&mut Run) -> Result<(), Said>,
+    ) -> Result<Frame, Said> {
         let run = self.run(name)?;
         work(run)?;
         Ok(run.frame(false, times))
@@ -135,19 +143,19 @@ impl Page {
 }
 
 impl Answers for Page {
-    fn open(&mut self, name: String, text: String) -> Result<Overview, String> {
+    fn open(&mut self, name: String, text: String) -> Result<Overview, Said> {
         let file = between::open(&name, text)?;
         self.put(name, file)
     }
 
-    fn close(&mut self, file: String) -> Result<(), String> {
+    fn close(&mut self, file: String) -> Result<(), Said> {
         self.files.remove(&file);
         self.proofs.remove(&file);
         self.shown.forget(&file);
         Ok(())
     }
 
-    fn speak(&mut self, language: String, words: Option<String>) -> Result<(), String> {
+    fn speak(&mut self, language: String, words: Option<String>) -> Result<(), Said> {
         // A program with its own texts takes none from a client.
         if let Some(words) = words.filter(|_| cfg!(target_arch = "wasm32")) {
             g7_model::said::teach(words);
@@ -156,88 +164,91 @@ impl Answers for Page {
         for file in self.files.values_mut() {
             file.language = self.language;
         }
+        for run in self.runs.values_mut() {
+            run.language = self.language;
+        }
         Ok(())
     }
 
-    fn look(&mut self, file: String) -> Result<Overview, String> {
+    fn look(&mut self, file: String) -> Result<Overview, Said> {
         Ok(overview(&file, self.file(&file)?))
     }
 
-    fn text(&mut self, file: String) -> Result<Text, String> {
+    fn text(&mut self, file: String) -> Result<Text, Said> {
         Ok(Text { text: self.file(&file)?.text().to_owned() })
     }
 
-    fn splice(&mut self, file: String, splices: Vec<Change>, unit: bool) -> Result<Overview, String> {
+    fn splice(&mut self, file: String, splices: Vec<Change>, unit: bool) -> Result<Overview, Said> {
         let open = self.file_mut(&file)?;
         let splices = inward(open, &splices);
         open.change(&splices, !unit)?;
         self.look(file)
     }
 
-    fn edit(&mut self, file: String, gesture: Gesture) -> Result<Edited, String> {
+    fn edit(&mut self, file: String, gesture: Gesture) -> Result<Edited, Said> {
         edit::edit(&file, self.file_mut(&file)?, &gesture)
     }
 
-    fn undo(&mut self, file: String) -> Result<Edited, String> {
+    fn undo(&mut self, file: String) -> Result<Edited, Said> {
         self.travel(&file, true)
     }
 
-    fn redo(&mut self, file: String) -> Result<Edited, String> {
+    fn redo(&mut self, file: String) -> Result<Edited, Said> {
         self.travel(&file, false)
     }
 
-    fn copy(&mut self, file: String, ids: Vec<ItemId>) -> Result<Text, String> {
+    fn copy(&mut self, file: String, ids: Vec<ItemId>) -> Result<Text, Said> {
         Ok(Text { text: gestures::copy(self.file(&file)?, &ids) })
     }
 
-    fn merge(&mut self, base: String, mine: String, theirs: String) -> Result<Merged, String> {
+    fn merge(&mut self, base: String, mine: String, theirs: String) -> Result<Merged, Said> {
         merge(&base, &mine, &theirs)
     }
 
-    fn format(&mut self, file: String) -> Result<Edited, String> {
+    fn format(&mut self, file: String) -> Result<Edited, Said> {
         edit::format(&file, self.file_mut(&file)?)
     }
 
-    fn references(&mut self, file: String, at: usize) -> Result<Vec<(usize, usize)>, String> {
+    fn references(&mut self, file: String, at: usize) -> Result<Vec<(usize, usize)>, Said> {
         Ok(language::references(self.file(&file)?, at))
     }
 
-    fn drawing(&mut self, wish: drawing::Wish) -> Result<Redrawn<'_>, String> {
+    fn drawing(&mut self, wish: drawing::Wish) -> Result<Redrawn<'_>, Said> {
         let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
         Ok(self.shown.answer(&wish, drawn))
     }
 
-    fn forms(&mut self) -> Result<Vec<Form>, String> {
+    fn forms(&mut self) -> Result<Vec<Form>, Said> {
         if !WHOLE {
             return between::not_here();
         }
         Ok(export::forms())
     }
 
-    fn export(&mut self, file: String, to: String) -> Result<Out, String> {
+    fn export(&mut self, file: String, to: String) -> Result<Out, Said> {
         if !WHOLE {
             return between::not_here();
         }
         export::export(&file, self.file(&file)?, &to)
     }
 
-    fn logic(&mut self, file: String, id: String) -> Result<Vec<Piece>, String> {
+    fn logic(&mut self, file: String, id: String) -> Result<Vec<Piece>, Said> {
         language::logic(self.file(&file)?, &id)
     }
 
-    fn logic_read(&mut self, tongue: Tongue, text: String) -> Result<Text, String> {
+    fn logic_read(&mut self, tongue: Tongue, text: String) -> Result<Text, Said> {
         Ok(Text { text: language::logic_read(tongue, &text)? })
     }
 
-    fn style(&mut self, dark: bool) -> Result<Style, String> {
+    fn style(&mut self, dark: bool) -> Result<Style, Said> {
         Ok(Style { css: g7_draw::style(dark) })
     }
 
-    fn test(&mut self, file: String, name: Option<String>) -> Result<testing::Report, String> {
+    fn test(&mut self, file: String, name: Option<String>) -> Result<testing::Report, Said> {
         testing::test(self.file(&file)?, name.as_deref())
     }
 
-    fn prove(&mut self, file: String, limits: prove::Limits) -> Result<prove::Report, String> {
+    fn prove(&mut self, file: String, limits: prove::Limits) -> Result<prove::Report, Said> {
         if !WHOLE {
             return between::not_here();
         }
@@ -247,14 +258,14 @@ impl Answers for Page {
         Ok(report)
     }
 
-    fn prove_ways(&mut self, file: String, wish: prove::Wish) -> Result<prove::Ways, String> {
+    fn prove_ways(&mut self, file: String, wish: prove::Wish) -> Result<prove::Ways, Said> {
         if !WHOLE {
             return between::not_here();
         }
         prove::ways(self.file(&file)?, &wish)
     }
 
-    fn compare(&mut self, wish: prove::Both) -> Result<prove::Compared, String> {
+    fn compare(&mut self, wish: prove::Both) -> Result<prove::Compared, Said> {
         if !WHOLE {
             return between::not_here();
         }
@@ -262,35 +273,35 @@ impl Answers for Page {
         prove::compared([self.file(a)?, self.file(b)?], &wish)
     }
 
-    fn before(&mut self, file: String) -> Result<Before, String> {
+    fn before(&mut self, file: String) -> Result<Before, Said> {
         Ok(Before { text: self.file(&file)?.before() })
     }
 
-    fn tokens(&mut self, file: String, from: usize, to: usize) -> Result<Vec<Coloured>, String> {
+    fn tokens(&mut self, file: String, from: usize, to: usize) -> Result<Vec<Coloured>, Said> {
         Ok(language::tokens(self.file(&file)?, from, to))
     }
 
-    fn complete(&mut self, file: String, at: usize) -> Result<Completion, String> {
+    fn complete(&mut self, file: String, at: usize) -> Result<Completion, Said> {
         Ok(language::complete(self.file(&file)?, at))
     }
 
-    fn hover(&mut self, file: String, at: usize) -> Result<Option<Hover>, String> {
+    fn hover(&mut self, file: String, at: usize) -> Result<Option<Hover>, Said> {
         Ok(language::hover(self.file(&file)?, at))
     }
 
-    fn symbols(&mut self, file: String) -> Result<Tables, String> {
+    fn symbols(&mut self, file: String) -> Result<Tables, Said> {
         Ok(language::tables(self.file(&file)?))
     }
 
-    fn search(&mut self, file: String, text: String) -> Result<Vec<Hit>, String> {
+    fn search(&mut self, file: String, text: String) -> Result<Vec<Hit>, Said> {
         Ok(language::search(self.file(&file)?, &text))
     }
 
-    fn run_start(&mut self, wish: run::Start) -> Result<Started, String> {
+    fn run_start(&mut self, wish: run::Start) -> Result<Started, Said> {
         if self.runs.len() >= MOST && !self.runs.contains_key(&wish.run) {
-            return Err("too many runs: stop one".to_owned());
+            return Err(say!("there are too many runs; stop one"));
         }
-        let mut run = run::start(&self.file(&wish.file)?.source, &wish)?;
+        let mut run = run::start(&self.file(&wish.file)?.source, &wish, self.language)?;
         let started = run.started();
         self.runs.insert(wish.run, run);
         Ok(started)
@@ -302,75 +313,78 @@ impl Answers for Page {
         ms: f64,
         most_scans: Option<u32>,
         times: bool,
-    ) -> Result<Frame, String> {
+    ) -> Result<Frame, Said> {
         self.with(&run, times, |r| r.advance(ms, most_scans))
     }
 
-    fn run_scan(&mut self, run: String, times: bool) -> Result<Frame, String> {
+    fn run_scan(&mut self, run: String, times: bool) -> Result<Frame, Said> {
         self.with(&run, times, Run::one_scan)
     }
 
-    fn run_pass(&mut self, run: String, times: bool) -> Result<Frame, String> {
+    fn run_pass(&mut self, run: String, times: bool) -> Result<Frame, Said> {
         self.with(&run, times, Run::pass)
     }
 
-    fn run_set(&mut self, run: String, signal: usize, value: String) -> Result<Frame, String> {
+    fn run_set(&mut self, run: String, signal: usize, value: String) -> Result<Frame, Said> {
         self.with(&run, false, |r| r.set(signal, &value))
     }
 
-    fn run_toggle(&mut self, run: String, signal: usize) -> Result<Frame, String> {
+    fn run_toggle(&mut self, run: String, signal: usize) -> Result<Frame, Said> {
         self.with(&run, false, |r| r.toggle(signal))
     }
 
-    fn run_force(&mut self, run: String, signal: usize, value: String) -> Result<Frame, String> {
+    fn run_force(&mut self, run: String, signal: usize, value: String) -> Result<Frame, Said> {
         self.with(&run, false, |r| r.force(signal, &value))
     }
 
-    fn run_release(&mut self, run: String, signal: Option<usize>) -> Result<Frame, String> {
+    fn run_release(&mut self, run: String, signal: Option<usize>) -> Result<Frame, Said> {
         self.with(&run, false, |r| match signal {
             Some(signal) => r.release(signal),
             None => r.release_all(),
         })
     }
 
-    fn run_restart(&mut self, run: String, warm: bool) -> Result<Frame, String> {
+    fn run_restart(&mut self, run: String, warm: bool) -> Result<Frame, Said> {
         self.with(&run, true, |r| r.restart(warm))
     }
 
-    fn run_seek(&mut self, run: String, ms: f64) -> Result<Frame, String> {
+    fn run_seek(&mut self, run: String, ms: f64) -> Result<Frame, Said> {
         self.with(&run, true, |r| r.seek(ms))
     }
 
-    fn run_live(&mut self, run: String, here: bool) -> Result<Frame, String> {
+    fn run_live(&mut self, run: String, here: bool) -> Result<Frame, Said> {
         self.with(&run, true, |r| {
             r.live(here);
             Ok(())
         })
     }
 
-    fn run_breaks(&mut self, run: String, ids: Vec<String>) -> Result<Breaks, String> {
+    fn run_breaks(&mut self, run: String, ids: Vec<String>) -> Result<Breaks, Said> {
         let run = self.run(&run)?;
         run.set_breaks(&ids);
         Ok(Breaks { ids: run.break_ids() })
     }
 
-    fn run_swap(&mut self, run: String, file: String, force: bool) -> Result<Swapped, String> {
-        let open = self.files.get(&file).ok_or_else(|| format!("{file} is not open"))?;
-        let run = self.runs.get_mut(&run).ok_or_else(|| format!("there is no run `{run}`"))?;
+    fn run_swap(&mut self, run: String, file: String, force: bool) -> Result<Swapped, Said> {
+        let open = self.files.get(&file).ok_or_else(|| not_open(&file))?;
+        let run = self.runs.get_mut(&run).ok_or_else(|| no_run(&run))?;
         let lost = run.swap(&open.source, force)?;
-        Ok(if lost.is_empty() { Swapped::Started(Box::new(run.started())) } else { Swapped::Lost { lost } })
+        if lost.is_empty() {
+            return Ok(Swapped::Started(Box::new(run.started())));
+        }
+        Ok(Swapped::Lost { lost: lost.iter().map(|l| l.in_language(self.language)).collect() })
     }
 
-    fn run_stop(&mut self, run: String) -> Result<(), String> {
+    fn run_stop(&mut self, run: String) -> Result<(), Said> {
         self.runs.remove(&run);
         Ok(())
     }
 
-    fn run_frame(&mut self, run: String, full: bool, times: bool) -> Result<Frame, String> {
+    fn run_frame(&mut self, run: String, full: bool, times: bool) -> Result<Frame, Said> {
         Ok(self.run(&run)?.frame(full, times))
     }
 
-    fn run_signals(&mut self, run: String) -> Result<Started, String> {
+    fn run_signals(&mut self, run: String) -> Result<Started, Said> {
         Ok(self.run(&run)?.started())
     }
 
@@ -381,7 +395,7 @@ impl Answers for Page {
         from_ms: f64,
         to_ms: f64,
         most: usize,
-    ) -> Result<Lanes, String> {
+    ) -> Result<Lanes, Said> {
         Ok(self.run(&run)?.lanes(&signals, from_ms, to_ms, most))
     }
 
@@ -392,7 +406,7 @@ impl Answers for Page {
         form: run::Form,
         from_ms: Option<f64>,
         to_ms: Option<f64>,
-    ) -> Result<Text, String> {
+    ) -> Result<Text, Said> {
         Ok(Text { text: self.run(&run)?.export(&signals, form, from_ms, to_ms)? })
     }
 }

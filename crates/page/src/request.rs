@@ -1,6 +1,7 @@
 //! The messages that the page can send, each with the type of its answer. They stand in one table. The requests, the
 //! trait that answers them and the page's `protocol.ts` are all made from it.
 
+use g7_model::Said;
 use serde::Deserialize;
 
 use crate::answer::{Answer, Before, Breaks, Style, Text, ok};
@@ -45,7 +46,7 @@ macro_rules! requests {
         pub(crate) trait Answers {
             $(
                 $(#[doc = $doc])*
-                fn $name(&mut self, $($field: $ty),*) -> Result<$answer, String>;
+                fn $name(&mut self, $($field: $ty),*) -> Result<$answer, Said>;
             )*
 
             fn answer(&mut self, request: Request) -> Answer {

@@ -3,6 +3,7 @@
 use g7_host::VirtualClock;
 use g7_ide::File;
 use g7_ide::ids;
+use g7_model::Said;
 use g7_rig::testing::{self, Coverage, Options};
 use serde::Serialize;
 
@@ -61,12 +62,12 @@ struct Reached {
 }
 
 /// Runs the tests whose titles contain a text, or all.
-pub(crate) fn test(file: &File, filter: Option<&str>) -> Result<Report, String> {
+pub(crate) fn test(file: &File, filter: Option<&str>) -> Result<Report, Said> {
     let mut coverage = Coverage::default();
     let options = Options { filter, ..Options::default() };
     let mut clock = VirtualClock::default();
-    let (outcomes, problems) = testing::file(&file.source, options, &mut coverage, &mut clock, &mut || {})
-        .map_err(|e| e.to_string())?;
+    let (outcomes, problems) =
+        testing::file(&file.source, options, &mut coverage, &mut clock, &mut || {}).map_err(|e| e.said())?;
     let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
     let errors = problems.iter().filter(|p| p.severity() == g7_model::Severity::Error);
     let rows = outcomes.iter().map(|o| {
@@ -78,15 +79,11 @@ pub(crate) fn test(file: &File, filter: Option<&str>) -> Result<Report, String> 
             to,
             simulated_ms: o.simulated.as_millis(),
             scans: o.scans,
-            notes: o.notes.clone(),
+            notes: o.notes.iter().map(|n| n.in_language(file.language)).collect(),
             failure: o.defect.as_ref().map(|d| {
                 let (from, to) = file.units(d.at);
                 Failure {
-                    message: if d.expected.is_empty() {
-                        d.what.clone()
-                    } else {
-                        format!("{}: {}", d.what, d.expected)
-                    },
+                    message: d.sentence().in_language(file.language),
                     from,
                     to,
                     time_ms: d.time.as_millis(),
@@ -99,7 +96,7 @@ pub(crate) fn test(file: &File, filter: Option<&str>) -> Result<Report, String> 
     });
     let document = &file.source.document;
     let sorts = coverage.sorts().map(|(sort, rows)| Reached {
-        sort,
+        sort: sort.key(),
         total: rows.len(),
         reached: rows.values().filter(|r| r.hits > 0).count(),
         missed: rows

@@ -15,16 +15,16 @@ use g7_compile::ir::VarClass;
 use g7_compile::symbols::{Symbols, Variable};
 use g7_engine::{Addr, Common, GroupId, NONE, State, StepId};
 use g7_host::Runner;
-use g7_model::{Chart, ChartKind, Document};
+use g7_model::{Chart, ChartKind, Document, Said, say};
 
-use crate::{Bench, Role};
+use crate::{Bench, Role, fault};
 
 /// A run that continues with the changed charts.
 pub struct Carried {
     /// The run, at the same instant as the old one.
     pub runner: Runner,
     /// A sentence for each part of the old run that does not continue.
-    pub lost: Vec<String>,
+    pub lost: Vec<Said>,
 }
 
 /// Continues a run of old charts with new ones.
@@ -33,9 +33,9 @@ pub struct Carried {
 ///
 /// The reason why this is impossible: a fault has stopped the run, or an expression of the new
 /// charts fails in this state.
-pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -> Result<Carried, String> {
+pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -> Result<Carried, Said> {
     if run.halt().is_some() {
-        return Err("a fault has stopped the run: restart it".to_owned());
+        return Err(say!("a fault has stopped the run: restart it"));
     }
     let (bench, before) = (new.0, old.0);
     let mut lost = Vec::new();
@@ -52,7 +52,7 @@ pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -
                 let value = before.value(run, item);
                 bench.force(&mut runner, i, &value);
             }
-            None if forced => lost.push(format!("`{}` was forced and no longer exists", item.name)),
+            None if forced => lost.push(say!("`{}` was forced and no longer exists", item.name)),
             Some(i) if matches!((item.role, i.role), (Role::Input(_), Role::Input(_))) => {
                 let value = before.value(run, item);
                 bench.set(&mut runner, i, &value);
@@ -68,13 +68,13 @@ fn charts(
     new: (&Bench, &Document),
     old: (&Bench, &Document),
     state: &State,
-    lost: &mut Vec<String>,
-) -> Result<State, String> {
+    lost: &mut Vec<Said>,
+) -> Result<State, Said> {
     let (c, was) = (&new.0.compiled, &old.0.compiled);
     let kept = kept_charts(new.1, old.1);
     let at_work = at_work(old.1, was, state);
     for task in &at_work {
-        lost.push(format!("the task `{task}` is being executed: it restarts"));
+        lost.push(say!("the task `{task}` is being executed: it restarts"));
     }
     let path_kept = |path: &str| path.split('.').next().is_some_and(|chart| kept.contains(chart));
     let partners = partners(&was.symbols);
@@ -93,7 +93,7 @@ fn charts(
         let task = was.symbols.step_path(step).split('.').next().unwrap_or("").to_owned();
         // The loss of a task was reported already; do not report its steps again.
         if !tasks(old.1).any(|t| *t.name.text == *task) {
-            lost.push(format!("step `{}` is active and no longer exists", was.symbols.step_name(step)));
+            lost.push(say!("step `{}` is active and no longer exists", was.symbols.step_name(step)));
         }
     }
     let words = words(c, was, state, lost);
@@ -106,11 +106,12 @@ fn charts(
     let blocks = blocks(c, was);
     let common = Common { words: &words, steps: &steps, begin: &begin, groups: &groups, blocks: &blocks };
     let carried = g7_engine::carry(&c.program, (&was.program, state), &common);
-    let (state, delays) = carried.map_err(|f| format!("the changed chart cannot go on here: {}", f.kind))?;
+    let (state, delays) =
+        carried.map_err(|f| say!("the changed chart cannot go on here: {}", fault(f.kind)))?;
     match delays {
         0 => {}
-        1 => lost.push("a running delay restarts".to_owned()),
-        n => lost.push(format!("{n} running delays restart")),
+        1 => lost.push(say!("a running delay restarts")),
+        n => lost.push(say!("{n} running delays restart")),
     }
     Ok(state)
 }
@@ -150,7 +151,7 @@ fn key(symbols: &Symbols, step: StepId) -> String {
 
 /// The pairs of words of variables that exist in both with the same type. Reports the values that
 /// are lost.
-fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) -> Vec<(Addr, Addr)> {
+fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<Said>) -> Vec<(Addr, Addr)> {
     let old: BTreeMap<&str, &Variable> = was.symbols.variables.iter().map(|v| (&*v.name, v)).collect();
     let lasting = |v: &Variable| !matches!(v.class, VarClass::Const | VarClass::Local);
     let (drives, drove) = (driven(c), driven(was));
@@ -172,12 +173,12 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<String>) ->
         if kept.contains(&*o.name) || o.value(state) == o.value(&fresh) || o.class == VarClass::Input {
             continue;
         }
-        let value = Symbols::value_text(o.ty, o.value(state));
+        let value = Said::foreign(Symbols::value_text(o.ty, o.value(state)));
         let now = c.symbols.variable(&o.name);
         lost.push(match now {
-            Some(v) => format!("`{}` was {} and is {}: its value {value} is lost", o.name, o.ty, v.ty),
-            None if value.is_empty() => format!("`{}` no longer exists", o.name),
-            None => format!("`{}`, which is {value}, no longer exists", o.name),
+            Some(v) => say!("`{}` was {} and is {}: its value {value} is lost", o.name, o.ty, v.ty),
+            None if value.is_empty() => say!("`{}` no longer exists", o.name),
+            None => say!("`{}`, which is {value}, no longer exists", o.name),
         });
     }
     words
@@ -209,11 +210,11 @@ fn plant(
     before: &Bench,
     run: &Runner,
     runner: &mut Runner,
-    lost: &mut Vec<String>,
-) -> Result<(), String> {
+    lost: &mut Vec<Said>,
+) -> Result<(), Said> {
     let (Some(side), Some(old), Some((_, state))) = (&bench.plant, &before.plant, run.plant()) else {
         if let Some(old) = &before.plant {
-            lost.push(format!("the plant `{}` no longer exists", old.name));
+            lost.push(say!("the plant `{}` no longer exists", old.name));
         }
         return Ok(());
     };
@@ -221,7 +222,7 @@ fn plant(
     words.extend(side.compiled.symbols.seed.zip(old.compiled.symbols.seed));
     let common = Common { words: &words, ..Common::default() };
     let carried = g7_engine::carry(&side.compiled.program, (&old.compiled.program, state), &common);
-    let (state, _) = carried.map_err(|f| format!("the changed plant cannot go on here: {}", f.kind))?;
+    let (state, _) = carried.map_err(|f| say!("the changed plant cannot go on here: {}", fault(f.kind)))?;
     runner.set_plant_state(state);
     Ok(())
 }

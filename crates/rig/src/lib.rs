@@ -16,6 +16,7 @@
 mod bench;
 mod carry;
 mod error;
+mod faults;
 mod source;
 pub mod testing;
 pub mod values;
@@ -24,4 +25,5 @@ pub use bench::build::build;
 pub use bench::{Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSide, Role, StepItem, Table};
 pub use carry::{Carried, carry};
 pub use error::Error;
+pub use faults::fault;
 pub use source::Source;

@@ -1,7 +1,7 @@
 //! Reads values that users type: on the command line, in the terminal view, in the page; and shows values.
 
 use g7_host::{Kind, Value};
-use g7_model::Nanos;
+use g7_model::{Nanos, Said, say};
 
 /// Reads a duration such as `1h30m`, `2.5s` or `500ms`. It must be more than 0; 0 itself is written
 /// `0s`.
@@ -9,8 +9,8 @@ use g7_model::Nanos;
 /// # Errors
 ///
 /// A text that says what was expected.
-pub fn duration(text: &str) -> Result<Nanos, String> {
-    let bad = || "expected a duration such as 10ms, 2.5s or 1h30m".to_owned();
+pub fn duration(text: &str) -> Result<Nanos, Said> {
+    let bad = || say!("expected a duration such as `10ms`, `2.5s` or `1h30m`");
     let text = text.trim();
     let text = text.strip_prefix("T#").or(text.strip_prefix("t#")).unwrap_or(text);
     let mut left = text.replace('_', "");
@@ -26,7 +26,7 @@ pub fn duration(text: &str) -> Result<Nanos, String> {
         total += part(number, unit).ok_or_else(bad)?;
         left = rest.to_owned();
     }
-    i64::try_from(total).map(Nanos::new).map_err(|_| "this duration is too long".to_owned())
+    i64::try_from(total).map(Nanos::new).map_err(|_| say!("this duration is too long"))
 }
 
 /// Converts a number with a unit exactly; `None` if it has a fraction of a nanosecond.
@@ -59,17 +59,17 @@ fn part(number: &str, unit: &str) -> Option<i128> {
 /// # Errors
 ///
 /// A text that says what was expected.
-pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
+pub fn read(text: &str, kind: Kind) -> Result<Value, Said> {
     let plain = text.trim();
     let number = plain.replace('_', "");
     match kind {
         Kind::Bool => match plain.to_ascii_lowercase().as_str() {
             "1" | "true" | "on" => Ok(Value::Word(1)),
             "0" | "false" | "off" => Ok(Value::Word(0)),
-            _ => Err(format!("`{plain}` is not a BOOL: write TRUE or FALSE")),
+            _ => Err(say!("`{plain}` is not a BOOL: write TRUE or FALSE")),
         },
         Kind::Int { bits, signed } => {
-            let value: i128 = number.parse().map_err(|_| format!("`{plain}` is not a whole number"))?;
+            let value: i128 = number.parse().map_err(|_| say!("`{plain}` is not a whole number"))?;
             let bits = u32::from(bits.clamp(1, 64));
             let (least, most) = if signed {
                 (-(1i128 << (bits - 1)), (1i128 << (bits - 1)) - 1)
@@ -77,18 +77,18 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, String> {
                 (0, (1i128 << bits) - 1)
             };
             if value < least || value > most {
-                return Err(format!("`{plain}` is outside {least} .. {most}"));
+                return Err(say!("`{plain}` is outside `{least} .. {most}`"));
             }
             Ok(Value::Word(value as u64))
         }
         Kind::Real => number
             .parse::<f32>()
             .map(|x| Value::Word(u64::from(x.to_bits())))
-            .map_err(|_| format!("`{plain}` is not a number")),
+            .map_err(|_| say!("`{plain}` is not a number")),
         Kind::Lreal => number
             .parse::<f64>()
             .map(|x| Value::Word(x.to_bits()))
-            .map_err(|_| format!("`{plain}` is not a number")),
+            .map_err(|_| say!("`{plain}` is not a number")),
         Kind::Time => duration(plain).map(|time| Value::Word(time.count() as u64)),
         Kind::Text => {
             let inner = plain.strip_prefix('\'').and_then(|t| t.strip_suffix('\''));

@@ -137,6 +137,15 @@ pub fn tool(name: &str) -> bool {
     found
 }
 
+/// True if tmux is there, which knows `-V` and no `--version`; otherwise the skip is counted.
+pub fn tmux() -> bool {
+    let found = quiet(Command::new("tmux").arg("-V"));
+    if !found {
+        skip("tmux missing");
+    }
+    found
+}
+
 fn starts(name: &str) -> bool {
     quiet(Command::new(name).arg("--version"))
 }

@@ -3,6 +3,7 @@
 import type { Wishes } from '../operator/told';
 import { opened, Refused, type Door, type Message, type RunName } from './page';
 import type { Answers, Started } from './protocol';
+import { prefs } from './prefs.svelte';
 import { session } from './session.svelte';
 
 export interface Info {
@@ -249,7 +250,11 @@ class Server implements Door {
   }
 
   async #fetch(path: string, init: RequestInit = {}): Promise<Response> {
-    const headers = { ...(init.headers as Record<string, string>), authorization: `Bearer ${this.#token}` };
+    const headers = {
+      ...(init.headers as Record<string, string>),
+      'accept-language': prefs.language,
+      authorization: `Bearer ${this.#token}`
+    };
     return fetch(new URL(path, document.baseURI), { ...init, headers });
   }
 

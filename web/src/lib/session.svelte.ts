@@ -1,5 +1,6 @@
 // Who uses the page: a user of the server with a role, or whoever has the token of its start.
 import { t } from './i18n';
+import { prefs } from './prefs.svelte';
 
 export type Role = 'viewer' | 'operator' | 'engineer' | 'admin';
 export const ROLES: readonly Role[] = ['viewer', 'operator', 'engineer', 'admin'];
@@ -12,6 +13,11 @@ interface Told {
   user?: { name: string; role: Role } | null;
   /** What people do is written down. */
   log?: boolean;
+}
+
+/** The language of the page, for what the server refuses. */
+function spoken(): Record<string, string> {
+  return { 'accept-language': prefs.language };
 }
 
 class Session {
@@ -38,7 +44,7 @@ class Session {
   /** Sends something to the server; the reason where it is refused. */
   async send(path: string, body: unknown): Promise<string> {
     try {
-      const init = { method: 'POST', headers: { 'content-type': 'application/json' }, body: JSON.stringify(body) };
+      const init = { method: 'POST', headers: { 'content-type': 'application/json', ...spoken() }, body: JSON.stringify(body) };
       const answer = await fetch(new URL(`api/${path}`, document.baseURI), init);
       return answer.ok ? '' : (await answer.text()) || answer.statusText;
     } catch {
@@ -48,7 +54,7 @@ class Session {
 
   async get<T>(path: string): Promise<{ ok: T } | { no: string }> {
     try {
-      const answer = await fetch(new URL(`api/${path}`, document.baseURI));
+      const answer = await fetch(new URL(`api/${path}`, document.baseURI), { headers: spoken() });
       if (answer.ok) return { ok: (await answer.json()) as T };
       return { no: (await answer.text()) || answer.statusText };
     } catch {

@@ -5,20 +5,21 @@
 //! model::Document -> resolve (names) -> here: name by name, the whole document
 //! ```
 //!
-//! Names are looked up in the order of `resolve`. An unknown name has no entry. Plants and tests
-//! are followed too; they see the charts from outside.
+//! Names are looked up in the order of `resolve`. An unknown name stands in a list of its own. Plants
+//! and tests are followed too; they see the charts from outside.
 
 mod named;
 mod walk;
 
 use g7_model::{Document, Span};
 
-pub use named::{Definition, Use, Written};
+pub use named::{Definition, Unknown, Use, Written};
 
 /// Every name of a document with what it refers to, in the order of the text.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct References {
     uses: Vec<Use>,
+    unknown: Vec<Unknown>,
 }
 
 impl References {
@@ -52,14 +53,19 @@ impl References {
     pub fn all(&self) -> &[Use] {
         &self.uses
     }
+
+    /// Names that are read and refer to nothing that is read.
+    pub fn unknown(&self) -> &[Unknown] {
+        &self.unknown
+    }
 }
 
 /// Follows every name of a document.
 pub fn references(doc: &Document) -> References {
-    let mut uses = walk::uses(doc);
+    let (mut uses, unknown) = walk::uses(doc);
     uses.sort_by_key(|u| (u.at, u.before));
     uses.dedup();
-    References { uses }
+    References { uses, unknown }
 }
 
 #[cfg(test)]

@@ -89,3 +89,12 @@ pub struct Use {
     /// Letters before the name itself: 1 in `X12`, 2 in `XM3` of macro-step `3`.
     pub before: usize,
 }
+
+/// A name that is read, and of which it is not known what it refers to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unknown {
+    /// The whole word.
+    pub at: Span,
+    /// The chart whose step it names, if it can only name a step of that chart.
+    pub step_of: Option<String>,
+}

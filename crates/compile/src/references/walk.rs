@@ -8,15 +8,15 @@ use g7_model::{
     StepKind, Transition, VarDecl,
 };
 
-use super::named::{Definition, Use, Written};
+use super::named::{Definition, Unknown, Use, Written};
 use crate::ir::ChartId;
 use crate::resolve::{Tracer, resolve_open};
 
-/// Returns every name with what it refers to.
-pub(super) fn uses(doc: &Document) -> Vec<Use> {
+/// Returns every name with what it refers to, and the names of which this is not known.
+pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
     let (mut unit, mut scopes, _) = resolve_open(doc, None);
     let tracer = Tracer::new(&mut unit, &mut scopes);
-    let mut walk = Walk { tracer, locals: Vec::new(), plant: None, uses: Vec::new() };
+    let mut walk = Walk { tracer, locals: Vec::new(), plant: None, uses: Vec::new(), unknown: Vec::new() };
     let mut charts = 0;
     for item in &doc.items {
         if let Item::Chart(chart) = item {
@@ -28,7 +28,7 @@ pub(super) fn uses(doc: &Document) -> Vec<Use> {
             walk.item(doc, item);
         }
     }
-    walk.uses
+    (walk.uses, walk.unknown)
 }
 
 struct Walk<'u, 'd> {
@@ -37,6 +37,7 @@ struct Walk<'u, 'd> {
     /// The plant that is being walked, and its names; they hide those of the charts.
     plant: Option<(&'d Plant, HashSet<&'d str>)>,
     uses: Vec<Use>,
+    unknown: Vec<Unknown>,
 }
 
 impl<'d> Walk<'_, 'd> {
@@ -45,8 +46,17 @@ impl<'d> Walk<'_, 'd> {
     }
 
     fn name(&mut self, name: &Name, definition: Option<Definition>, written: Written) {
-        if let Some(definition) = definition {
-            self.add(name.at.0, definition, written);
+        match definition {
+            Some(definition) => self.add(name.at.0, definition, written),
+            None => self.unknown.push(Unknown { at: name.at.0, step_of: None }),
+        }
+    }
+
+    /// A name that can only be that of a step of a chart.
+    fn step_name(&mut self, chart: &str, name: &Name, written: Written) {
+        match self.tracer.step_of(chart, &name.text) {
+            Some(step) => self.add(name.at.0, step, written),
+            None => self.unknown.push(Unknown { at: name.at.0, step_of: Some(chart.to_owned()) }),
         }
     }
 
@@ -84,10 +94,7 @@ impl<'d> Walk<'_, 'd> {
                 self.name(&l.chart, chart, Written::Name);
                 for place in &l.places {
                     match &place.what {
-                        Placed::Step(name) => {
-                            let step = self.tracer.step_of(&l.chart.text, &name.text);
-                            self.name(name, step, Written::Name);
-                        }
+                        Placed::Step(name) => self.step_name(&l.chart.text, name, Written::Name),
                         Placed::Transition(label) => {
                             let (chart, text) = (l.chart.text.to_string(), label.text.to_string());
                             let def = Definition::Transition { chart, label: text };
@@ -155,8 +162,10 @@ impl<'d> Walk<'_, 'd> {
         // In a chain the preceding steps are those that the transition before it leads to.
         let before: &[Name] = if t.chained { &[] } else { &t.from };
         for name in before.iter().chain(&t.to) {
-            let step = self.tracer.own_step(&name.text);
-            self.name(name, step, Written::Step);
+            match self.tracer.own_step(&name.text) {
+                Some(step) => self.add(name.at.0, step, Written::Step),
+                None => self.unknown.push(Unknown { at: name.at.0, step_of: Some(chart.to_owned()) }),
+            }
         }
         self.expr(&t.receptivity);
         t.on_clearing.iter().for_each(|b| self.block(b));
@@ -191,7 +200,13 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         if let Some((at, def)) = of_plant {
             return self.add(at, def, Written::Path { first: true, only });
         }
-        for (k, definition, before) in self.tracer.path(names, &self.locals) {
+        let followed = self.tracer.path(names, &self.locals);
+        if !followed.whole {
+            let known = |k: usize| followed.names.iter().any(|(of, ..)| *of == k);
+            let missing = names.iter().enumerate().filter(|(k, _)| !known(*k));
+            self.unknown.extend(missing.map(|(_, name)| Unknown { at: name.at.0, step_of: None }));
+        }
+        for (k, definition, before) in followed.names {
             if let Some(name) = names.get(k) {
                 let written = Written::Path { first: k == 0, only };
                 self.uses.push(Use { at: name.at.0, definition, written, before });
@@ -200,7 +215,11 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
     }
 
     fn direct(&mut self, text: &'d str, at: Span) {
-        for (_, def, _) in self.tracer.direct(text) {
+        let found = self.tracer.direct(text);
+        if found.is_empty() {
+            self.unknown.push(Unknown { at, step_of: None });
+        }
+        for (_, def, _) in found {
             self.add(at, def, Written::Direct);
         }
     }
@@ -209,10 +228,7 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         let name = match order {
             Order::Force(name, situation) => {
                 if let Situation::Steps(steps) = situation {
-                    for step in steps {
-                        let def = self.tracer.step_of(&name.text, &step.text);
-                        self.name(step, def, Written::Step);
-                    }
+                    steps.iter().for_each(|step| self.step_name(&name.text, step, Written::Step));
                 }
                 name
             }
@@ -221,7 +237,7 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         let chart = self.tracer.chart(&name.text);
         let output = matches!(order, Order::Mask(_)) && chart.is_none();
         if output {
-            let def = self.tracer.path(std::slice::from_ref(name), &self.locals).into_iter().next();
+            let def = self.tracer.path(std::slice::from_ref(name), &self.locals).names.into_iter().next();
             return self.name(name, def.map(|d| d.1), Written::Name);
         }
         self.name(name, chart, Written::Name);

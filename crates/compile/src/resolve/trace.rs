@@ -14,6 +14,20 @@ use crate::references::Definition;
 /// name itself (`X` in `X12`).
 pub(crate) type Traced = (usize, Definition, usize);
 
+/// The names of a path, followed.
+#[derive(Debug, Default)]
+pub(crate) struct Followed {
+    pub(crate) names: Vec<Traced>,
+    /// False if it is not known what the names that are missing here refer to.
+    pub(crate) whole: bool,
+}
+
+impl Followed {
+    fn whole(names: Vec<Traced>) -> Followed {
+        Followed { names, whole: true }
+    }
+}
+
 /// Follows names in a resolved document.
 pub(crate) struct Tracer<'u, 'd>(Resolver<'u, 'd>);
 
@@ -44,13 +58,14 @@ impl<'u, 'd> Tracer<'u, 'd> {
     }
 
     /// Finds what the names of a path refer to; `locals` hide all other names.
-    pub(crate) fn path(&self, names: &[Name], locals: &[HashSet<&str>]) -> Vec<Traced> {
-        let Some(first) = names.first() else { return Vec::new() };
+    pub(crate) fn path(&self, names: &[Name], locals: &[HashSet<&str>]) -> Followed {
+        let Some(first) = names.first() else { return Followed::default() };
         if locals.iter().any(|l| l.contains(&*first.text)) {
-            return Vec::new();
+            return Followed::whole(Vec::new());
         }
         if names.len() == 1 {
-            return self.single(&first.text);
+            let names = self.single(&first.text);
+            return Followed { whole: !names.is_empty(), names };
         }
         let chart = self.0.scopes.chart(&first.text);
         if let Some(c) = chart {
@@ -58,22 +73,22 @@ impl<'u, 'd> Tracer<'u, 'd> {
             if !rest.is_empty() {
                 let mut all = vec![(0, self.of_chart_id(c), 0)];
                 all.extend(rest);
-                return all;
+                return Followed::whole(all);
             }
         }
         let entity = self.visible(&first.text);
         if let (Some((Entity::Var(v), def)), Some(second)) = (&entity, names.get(1))
             && self.0.member(*v, &second.text).is_some()
         {
-            return vec![(0, def.clone(), 0)];
+            return Followed::whole(vec![(0, def.clone(), 0)]);
         }
         let steps = self.step_path(None, names, 0);
         if !steps.is_empty() {
-            return steps;
+            return Followed::whole(steps);
         }
         // The path is wrong, but what it refers to is clear.
         let near = chart.map(|c| self.of_chart_id(c)).or(entity.map(|(_, def)| def));
-        near.map(|def| vec![(0, def, 0)]).unwrap_or_default()
+        Followed { names: near.map(|def| vec![(0, def, 0)]).unwrap_or_default(), whole: false }
     }
 
     /// `%X12`, `%XM3`, `%X3.12`, or the variable declared at an address.

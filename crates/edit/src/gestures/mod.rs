@@ -15,6 +15,7 @@ mod places;
 mod rename;
 mod settings;
 mod table;
+mod unread;
 
 pub(crate) use rename::{rename, rename_at};
 pub(crate) use table::renamed_row;

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 
 use g7_compile::{Definition, references};
 use g7_model::{
-    Chart, ChartItem, ChartKind, Document, FileId, Item, Layout, PlaceAt, Placed, Span, Step, StepKind,
+    Chart, ChartItem, ChartKind, Document, FileId, Item, Layout, PlaceAt, Placed, Said, Span, Step, StepKind,
     Transition, VarDecl, say,
 };
 
@@ -127,13 +127,13 @@ fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal
             match meaning(d, chart, &name.text) {
                 None => missing.names.push(name.clone()),
                 Some(Meaning::Variable(there)) if same(&there, &v) => {}
-                Some(Meaning::Variable(there)) => d.told.push(format!(
-                    "`{}` is declared here as {}; the pasted part had it as {}: the declaration here was kept",
+                Some(Meaning::Variable(there)) => d.told.push(say!(
+                    "`{}` is declared here as `{}`; the pasted part had it as `{}`: the declaration here was kept",
                     name.text,
                     sort(&there),
                     sort(&v)
                 )),
-                Some(Meaning::Other(what)) => d.told.push(format!(
+                Some(Meaning::Other(what)) => d.told.push(say!(
                     "`{}` is {what} here; the variable of the pasted part was not declared",
                     name.text
                 )),
@@ -151,7 +151,7 @@ fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal
 /// The present meaning of a name.
 enum Meaning {
     Variable(Box<VarDecl>),
-    Other(&'static str),
+    Other(Said),
 }
 
 fn meaning(d: &Draft<'_>, chart: &str, name: &str) -> Option<Meaning> {
@@ -165,10 +165,10 @@ fn meaning(d: &Draft<'_>, chart: &str, name: &str) -> Option<Meaning> {
         return Some(Meaning::Variable(Box::new(v.clone())));
     }
     d.doc.items.iter().find_map(|i| match i {
-        Item::Chart(c) if *c.name.text == *name => Some(Meaning::Other("a chart")),
-        Item::Action(a) if *a.name.text == *name => Some(Meaning::Other("an action")),
-        Item::Section(s) if *s.name.text == *name => Some(Meaning::Other("a transition section")),
-        Item::Function(f) if *f.name.text == *name => Some(Meaning::Other("a function")),
+        Item::Chart(c) if *c.name.text == *name => Some(Meaning::Other(say!("a chart"))),
+        Item::Action(a) if *a.name.text == *name => Some(Meaning::Other(say!("an action"))),
+        Item::Section(s) if *s.name.text == *name => Some(Meaning::Other(say!("a transition section"))),
+        Item::Function(f) if *f.name.text == *name => Some(Meaning::Other(say!("a function"))),
         _ => None,
     })
 }
@@ -183,7 +183,7 @@ fn sort(v: &VarDecl) -> String {
     let bare = VarDecl { address: None, inverted: false, safe: None, comment: None, ..v.clone() };
     let text = print_part(Part::Variable(&bare), None);
     let names = v.names.iter().map(|n| g7_syntax::show_name(&n.text)).collect::<Vec<_>>().join(", ");
-    format!("`{}`", text.replacen(&format!("{names} : "), "", 1))
+    text.replacen(&format!("{names} : "), "", 1)
 }
 
 /// Reads the text to paste: a small file, or only the lines of a chart.

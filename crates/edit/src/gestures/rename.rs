@@ -2,17 +2,20 @@
 //!
 //! Each use is written as its place requires: in back-ticks, after the `X` of `X12`, within `%X12`.
 //! Afterwards every name of the file must refer to the same part as before; a new name that would
-//! hide another, or be hidden by one, is refused.
+//! hide another, or be hidden by one, is refused. In a text with syntax errors a change that could miss a use is
+//! refused as well, with the line of that place (`unread`).
 
 use g7_compile::references::{Use, Written};
 use g7_compile::{Definition, References, references};
-use g7_model::{Item, Said, Span, say};
+use g7_model::{Item, Said, Span, codes, say};
 use g7_syntax::{Tree, show_name, show_path_name, show_step_name};
 
 use crate::change::{Edit, Refusal, Source, refuse};
 use crate::id::{ItemId, Part};
-use crate::reading::read;
+use crate::reading::{mended_first, read, same_problems};
 use crate::splice::{Splice, tidied};
+
+use super::unread::unread;
 
 /// Renames a part everywhere.
 pub(crate) fn rename(
@@ -57,14 +60,36 @@ fn everywhere(
     if refs.declaration(&new).is_some() || taken(source, &new) {
         return refuse(there_already(&definition, to));
     }
+    whole(source, refs, &definition, &new)?;
     let mut splices = Vec::new();
     for found in refs.uses_of(&definition) {
         splices.push(written(source.text, found, to)?);
     }
     let splices = tidied(source.text, splices);
     let tree = read(source, &splices).ok_or_else(|| Refusal::new(say!("the name cannot be written here")))?;
-    judge(refs, &tree, &definition, &new, &splices)?;
+    judge(source, refs, &tree, (&definition, &new), &splices)?;
     Ok(Edit { splices, read: Some(Box::new(tree)), ..Edit::default() })
+}
+
+/// Refuses if a place that could not be read may hold the name.
+fn whole(
+    source: &Source<'_>,
+    refs: &References,
+    definition: &Definition,
+    new: &Definition,
+) -> Result<(), Refusal> {
+    if source.problems.iter().any(|p| p.code == &codes::TOO_MANY_PROBLEMS) {
+        return refuse(mended_first());
+    }
+    for name in [last_name(definition), last_name(new)] {
+        if let Some(place) = unread(source, refs, definition, name) {
+            let line = source.text.get(..place.start).unwrap_or_default().matches('\n').count() + 1;
+            return refuse(say!(
+                "line {line} may name `{name}`; this is known only when the syntax errors are corrected"
+            ));
+        }
+    }
+    Ok(())
 }
 
 /// The part to be renamed, under its old and its new name.
@@ -82,6 +107,13 @@ fn defined(
             }
             Part::Transition(n) => {
                 let chart = source.document.charts().find(|c| *c.name.text == *id.chart);
+                // Transitions are counted, and one that was passed over is not.
+                let whole = |c: &g7_model::Chart| {
+                    source.reads_cleanly(c.at.0.start as usize + 1..c.at.0.end as usize)
+                };
+                if chart.is_some_and(|c| !whole(c)) {
+                    return refuse(mended_first());
+                }
                 let label = chart.and_then(|c| c.transitions().nth(*n)).and_then(|t| t.label.as_ref());
                 let Some(label) = label else {
                     return refuse(say!("this transition has no label; give it one first"));
@@ -254,15 +286,13 @@ fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
 
 /// Checks that after the change every name refers to the same part as before.
 fn judge(
+    source: &Source<'_>,
     before: &References,
     after: &Tree,
-    definition: &Definition,
-    new: &Definition,
+    (definition, new): (&Definition, &Definition),
     splices: &[Splice],
 ) -> Result<(), Refusal> {
-    if let Some(problem) = after.problems.first() {
-        return refuse(say!("this name cannot be written here: {}", problem.what));
-    }
+    same_problems(source, splices, after)?;
     let now = references(&after.document);
     let meant = |d: &Definition| if d == definition { new.clone() } else { within(d, definition, new) };
     let same = before.all().len() == now.all().len()
@@ -314,7 +344,7 @@ fn shifted(splices: &[Splice], at: Span) -> usize {
     start.saturating_add_signed(shift)
 }
 
-fn last_name(definition: &Definition) -> &str {
+pub(super) fn last_name(definition: &Definition) -> &str {
     match definition {
         Definition::Chart(n) | Definition::Function(n) | Definition::Plant(n) => n,
         Definition::Step { name, .. }

@@ -18,7 +18,7 @@ use serde_json::json;
 
 use crate::cli::{Check, Fixing, Report};
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{done, talk, told};
 use crate::progress::Progress;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
@@ -86,12 +86,12 @@ fn one(args: &Check, path: &Path) -> Result<Checked, Failure> {
             let fixed = fixes::applied(source, problems, likely, |source| self::problems(source, args))?;
             if fixed.count > 0 {
                 files::write(path, fixed.source.text.as_bytes())?;
-                let many = if fixed.count == 1 {
-                    "1 problem".to_owned()
-                } else {
-                    format!("{} problems", fixed.count)
+                let of = raw(&fixed.source.name);
+                let many = match fixed.count {
+                    1 => say!("1 problem of {of}"),
+                    n => say!("{n} problems of {of}"),
                 };
-                talk!("{}solved{:#} {many} of {}", style::GOOD, style::GOOD, fixed.source.name);
+                done(&say!("solved"), told(&many));
             }
             (fixed.source, fixed.problems)
         }
@@ -105,12 +105,13 @@ fn print(out: &mut dyn Write, checked: &Checked) -> Result<(), Failure> {
     if let Some(why) = &checked.no_form {
         writeln!(
             out,
-            "{}error[{}]:{:#} {}: {}",
+            "{}{}[{}]:{:#} {}: {}",
             style::BAD,
+            told(&say!("error")),
             codes::EXPECTED.id,
             style::BAD,
             checked.source.name,
-            why.in_language(language())
+            told(why)
         )?;
         return Ok(());
     }

@@ -10,10 +10,11 @@ use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::time::{Duration, SystemTime};
 
+use g7_model::say;
 use notify::{EventKind, RecommendedWatcher, RecursiveMode, Watcher};
 
 use crate::failure::{Failure, Verdict};
-use crate::message::talk;
+use crate::message::{error, talk, told};
 use crate::style;
 
 /// Time between two looks at the files where the system tells of changes.
@@ -108,10 +109,11 @@ pub(super) fn for_ever(
         }
         match look(&paths) {
             Err(failure @ Failure::Output(_)) => return Err(failure),
-            Err(failure) => talk!("{}error:{:#} {failure}", style::BAD, style::BAD),
+            Err(failure) => error(&failure),
             Ok(_) => {}
         }
-        talk!("{}waiting for a change; Ctrl-C ends{:#}", style::FAINT, style::FAINT);
+        let waiting = told(&say!("waiting for a change; Ctrl-C ends"));
+        talk!("{}{waiting}{:#}", style::FAINT, style::FAINT);
         loop {
             ear.wait();
             // An editor may replace a file by another: for a moment there may be none.

@@ -11,6 +11,7 @@ use g7_store::history::{Overview, Reader, Signal};
 use super::rows::{Broken, Csv, Row, Sink, rows};
 use super::time;
 use crate::failure::{Failure, Verdict, raw};
+use crate::message::told;
 use crate::{files, style, values};
 
 #[derive(Args, Debug)]
@@ -245,12 +246,15 @@ fn list(asked: &Asked<'_>) -> Result<(), Failure> {
     for span in &overview.spans {
         let start = span.start.max(overview.from);
         let long = Nanos::from_millis(span.stop.saturating_sub(start) / 1_000);
-        let lost =
-            if span.lost > 0 { format!("  {} changes were lost before", span.lost) } else { String::new() };
-        writeln!(out, "{} to {}  {}{lost}", shown(start), shown(span.stop), long.plain())?;
+        let (start, stop, long) = (raw(shown(start)), raw(shown(span.stop)), raw(long.plain()));
+        let of = match span.lost {
+            0 => say!("{start} to {stop}  {long}"),
+            n => say!("{start} to {stop}  {long}  {n} changes were lost before"),
+        };
+        writeln!(out, "{}", told(&of))?;
     }
     if lost > 0 {
-        writeln!(out, "{}{lost} changes were lost{:#}", style::WARN, style::WARN)?;
+        writeln!(out, "{}{}{:#}", style::WARN, told(&say!("{lost} changes were lost")), style::WARN)?;
     }
     for (_, Signal { name, class, ty, comment, .. }) in signals {
         let comment = comment.as_ref().map_or_else(String::new, |c| format!("  {c}"));

@@ -54,10 +54,12 @@ pub(super) fn changeable(open: &Open, p: &TextDocumentPositionParams) -> Option<
 pub(super) fn rename(open: &Open, p: &RenameParams) -> Result<Option<WorkspaceEdit>, String> {
     let Some((file, byte)) = at(open, &p.text_document_position) else { return Ok(None) };
     let uri = &p.text_document_position.text_document.uri;
-    let splices = references::rename(file, byte, &p.new_name)?;
+    let splices = references::rename(file, byte, &p.new_name).map_err(|e| e.in_language(file.language))?;
     let name = references::changeable(file, byte).map(|(_, name)| name).unwrap_or_default();
-    let mut changes: HashMap<Uri, Vec<TextEdit>> =
-        beside::renamed(uri, file, &name, &splices)?.into_iter().collect();
+    let mut changes: HashMap<Uri, Vec<TextEdit>> = beside::renamed(uri, file, &name, &splices)
+        .map_err(|e| e.in_language(file.language))?
+        .into_iter()
+        .collect();
     changes.insert(uri.clone(), places::edits(file, &splices));
     Ok(Some(WorkspaceEdit::new(changes)))
 }

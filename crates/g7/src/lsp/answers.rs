@@ -77,7 +77,7 @@ pub(super) fn completion(open: &Open, p: &CompletionParams) -> Option<Vec<Comple
             "member" => CompletionItemKind::FIELD,
             _ => CompletionItemKind::TEXT,
         }),
-        detail: Some(c.detail).filter(|d| !d.is_empty()),
+        detail: Some(c.detail.in_language(file.language)).filter(|d| !d.is_empty()),
         text_edit: Some(CompletionTextEdit::Edit(TextEdit::new(range, c.insert))),
         // The likely words stand first, as they came.
         sort_text: Some(format!("{n:04}")),
@@ -139,7 +139,7 @@ fn symbol(file: &File, e: Entry) -> DocumentSymbol {
     DocumentSymbol {
         // The protocol forbids an empty name.
         name: if e.name.is_empty() { "…".to_owned() } else { e.name },
-        detail: Some(e.detail).filter(|d| !d.is_empty()),
+        detail: Some(e.detail.in_language(file.language)).filter(|d| !d.is_empty()),
         kind: match e.kind {
             Kind::Chart => SymbolKind::CLASS,
             Kind::Step => SymbolKind::ENUM_MEMBER,

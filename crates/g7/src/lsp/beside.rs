@@ -5,6 +5,7 @@ use std::path::Path;
 
 use g7_edit::{Splice, spliced};
 use g7_ide::{File, Positions};
+use g7_model::{Said, say};
 use g7_rig::{Bench, Options, Source};
 use lsp_types::{Range, TextEdit, Uri};
 
@@ -19,19 +20,19 @@ pub(super) fn renamed(
     file: &File,
     name: &str,
     splices: &[Splice],
-) -> Result<Vec<(Uri, Vec<TextEdit>)>, String> {
+) -> Result<Vec<(Uri, Vec<TextEdit>)>, Said> {
     let Some(path) = places::path(uri) else { return Ok(Vec::new()) };
     let io_files = io_files(&path);
     if io_files.is_empty() {
         return Ok(Vec::new());
     }
-    let after = spliced(file.text(), splices).ok_or("the change does not fit the text")?;
+    let after = spliced(file.text(), splices).ok_or_else(|| say!("the change does not fit the text"))?;
     let benches = bench(file.text()).zip(bench(&after));
     let mut changes = Vec::new();
     for (io, text) in io_files {
         let Some((old, new)) = &benches else {
             if text.contains(name) {
-                return Err(format!("`{io}` may name `{name}` too: mend the errors of the chart first"));
+                return Err(say!("`{io}` may name `{name}` too: mend the errors of the chart first"));
             }
             continue;
         };

@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use g7_edit::{Splice, spliced};
 use g7_ide::{File, Positions};
-use g7_model::{Problem, Severity};
+use g7_model::{Problem, Said, Severity, say};
 use lsp_types::{
     Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DidChangeTextDocumentParams,
     DidCloseTextDocumentParams, DidOpenTextDocumentParams, Location, NumberOrString,
@@ -30,7 +30,7 @@ struct Text {
     uri: Uri,
     version: i32,
     /// The file; the reason if G7 cannot take it.
-    file: Result<File, String>,
+    file: Result<File, Said>,
 }
 
 impl Open {
@@ -84,7 +84,11 @@ impl Open {
             let problems = match &text.file {
                 Ok(file) => file.problems.iter().map(|p| diagnostic(file, &text.uri, p)).collect(),
                 Err(no) => {
-                    vec![Diagnostic { message: no.clone(), source: source(), ..Diagnostic::default() }]
+                    vec![Diagnostic {
+                        message: no.in_language(self.language),
+                        source: source(),
+                        ..Diagnostic::default()
+                    }]
                 }
             };
             told.push(PublishDiagnosticsParams::new(text.uri.clone(), problems, Some(text.version)));
@@ -94,7 +98,7 @@ impl Open {
 }
 
 /// The text after changes, each of which follows the one before.
-fn changed(file: &File, changes: Vec<TextDocumentContentChangeEvent>) -> Result<String, String> {
+fn changed(file: &File, changes: Vec<TextDocumentContentChangeEvent>) -> Result<String, Said> {
     let mut text = file.text().to_owned();
     for change in changes {
         let Some(range) = change.range else {
@@ -105,7 +109,7 @@ fn changed(file: &File, changes: Vec<TextDocumentContentChangeEvent>) -> Result<
         let start = places::byte(&positions, &text, range.start);
         let end = places::byte(&positions, &text, range.end).max(start);
         text = spliced(&text, &[Splice::new(start, end, change.text)])
-            .ok_or("a change does not fit the text; close the file and open it again")?;
+            .ok_or_else(|| say!("a change does not fit the text; close the file and open it again"))?;
     }
     Ok(text)
 }

@@ -110,7 +110,7 @@ impl Names {
             Wish::Cold => Command::Restart(g7_host::Start::Cold),
             Wish::Force { name, value, seconds } => {
                 let (item, what) = self.forcible(name)?;
-                let word = values::read(value, item.kind)?.word();
+                let word = values::read(value, item.kind).map_err(|e| e.to_string())?.word();
                 Command::Force(what, word, Nanos::SECOND * i64::from(*seconds))
             }
             Wish::Release { name } => Command::Release(self.forcible(name)?.1),
@@ -126,7 +126,7 @@ impl Names {
 
     /// The part of a panel that a variable is wired to, and the name of the variable.
     pub(crate) fn part(&self, name: &str) -> Result<(&str, &Part), String> {
-        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name))?;
+        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name).to_string())?;
         let mut inputs = self.wiring.devices.iter().flat_map(|device| &device.inputs);
         match inputs.find(|input| input.name == item.name).map(|input| &input.wire) {
             Some(Wire::Panel(part)) => Ok((&item.name, part)),
@@ -136,7 +136,7 @@ impl Names {
 
     /// A variable that can be forced.
     fn forcible(&self, name: &str) -> Result<(&Item, Force), String> {
-        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name))?;
+        let item = self.bench.item(name).ok_or_else(|| self.bench.unknown(name).to_string())?;
         match self.bench.force_of(item) {
             Some(what) => Ok((item, what)),
             None if item.role == Role::Plant => {

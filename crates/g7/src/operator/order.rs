@@ -175,7 +175,7 @@ fn forced(text: &str) -> Result<Wish, String> {
     let (value, seconds) = match rest.rsplit_once(" for ") {
         None => (rest, usual()),
         Some((value, time)) => {
-            let time = values::duration(time)?;
+            let time = values::duration(time).map_err(|e| e.to_string())?;
             let seconds = time.count() / Nanos::SECOND.count();
             if Nanos::SECOND * seconds != time {
                 return Err("the time of a force is in whole seconds".to_owned());

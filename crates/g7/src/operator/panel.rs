@@ -53,8 +53,8 @@ fn number(names: &Names, name: &str, part: &Part, text: &str) -> Result<(f64, St
         let place = place.ok_or_else(|| format!("`{name}` is one of {}", words.join(", ")))?;
         return Ok((place as f64, text.trim().to_owned()));
     }
-    let item = names.bench.item(name).ok_or_else(|| names.bench.unknown(name))?;
-    let value = values::read(text, item.kind)?;
+    let item = names.bench.item(name).ok_or_else(|| names.bench.unknown(name).to_string())?;
+    let value = values::read(text, item.kind).map_err(|e| e.to_string())?;
     let word = match value {
         Value::Word(word) => word,
         Value::Text(_) => return Err(format!("`{name}` is a text")),

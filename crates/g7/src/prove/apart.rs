@@ -3,14 +3,14 @@
 
 use std::io::Write;
 
-use g7_model::{ProfileName, say};
+use g7_model::{ProfileName, Said, say};
 use g7_rig::Source;
 use g7_verify::{Budget, Compare, Equality, Unlike, words};
 
 use super::trace::Drawer;
 use crate::cli;
 use crate::failure::{self, Failure, raw};
-use crate::message::talk;
+use crate::message::{talk, told};
 use crate::report::{self, Tally};
 use crate::{files, sources, style};
 
@@ -61,12 +61,18 @@ fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failu
     let mut out = anstream::stdout().lock();
     match g7_verify::compare(&what, &budget) {
         Equality::Equal(certificate) => {
-            let what = if args.situations { "outputs and situations" } else { "outputs" };
-            let which = if assumed { " that the assumptions of both allow" } else { "" };
-            let good = style::GOOD;
-            writeln!(out, "{good}equal{good:#}: the same {what} for every sequence of inputs{which}")?;
-            let [proof, ..] = words::equal(&certificate);
-            writeln!(out, "  {proof}")?;
+            let what = if args.situations {
+                say!("the same outputs and situations")
+            } else {
+                say!("the same outputs")
+            };
+            let of = if assumed {
+                say!("{what} for every sequence of inputs that the assumptions of both allow")
+            } else {
+                say!("{what} for every sequence of inputs")
+            };
+            writeln!(out, "{}{}{:#}: {}", style::GOOD, told(&say!("equal")), style::GOOD, told(&of))?;
+            writeln!(out, "  {}", told(&Said::in_each(words::equal(&certificate))))?;
             Ok(failure::Verdict::Fine)
         }
         Equality::Apart { moves, what } => {
@@ -76,12 +82,14 @@ fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failu
             }
             let both = <[Drawer; 2]>::try_from(drawers).ok();
             let count = moves.first().map_or(0, Vec::len);
-            let scans = if count == 1 { "scan" } else { "scans" };
-            let [what, ..] = words::difference(&what);
-            writeln!(out, "{}different{:#}: after {count} {scans} {what}", style::BAD, style::BAD)?;
+            let what = Said::in_each(words::difference(&what));
+            let after =
+                if count == 1 { say!("after 1 scan {what}") } else { say!("after {count} scans {what}") };
+            writeln!(out, "{}{}{:#}: {}", style::BAD, told(&say!("different")), style::BAD, told(&after))?;
             for (number, (side, moves)) in (1..).zip(sides.iter().zip(&moves)) {
                 let drawer = both.as_ref().and_then(|b| b.get(number - 1));
-                let fault = drawer.and_then(|d| d.fault(moves)).map(|f| format!(": fault: {f}"));
+                let fault =
+                    drawer.and_then(|d| d.fault(moves)).map(|f| format!(": {}", told(&say!("fault: {}", f))));
                 writeln!(out, "  {number}: {}{}", side.name, fault.unwrap_or_default())?;
             }
             for line in both.map(|b| Drawer::draw_both(&b, &moves)).unwrap_or_default().lines() {
@@ -90,14 +98,13 @@ fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failu
             Ok(failure::Verdict::Found)
         }
         Equality::Open(open) => {
-            let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
-            writeln!(out, "{}not decided{:#}: {why}", style::WARN, style::WARN)?;
-            writeln!(
-                out,
-                "  equal for all runs of up to {} scans ({} pairs of states)",
-                open.scans, open.states
-            )?;
-            writeln!(out, "  help: {help}")?;
+            let why = told(&Said::in_each(words::why(&open.reason)));
+            writeln!(out, "{}{}{:#}: {why}", style::WARN, told(&say!("not decided")), style::WARN)?;
+            let so_far =
+                say!("equal for all runs of up to {} scans ({} pairs of states)", open.scans, open.states);
+            writeln!(out, "  {}", told(&so_far))?;
+            let help = Said::in_each(words::way_on(&open.reason));
+            writeln!(out, "  {}", told(&say!("help: {}", help)))?;
             Ok(failure::Verdict::Open)
         }
         Equality::Unlike(why) => Err(unlike(&why)),
@@ -105,15 +112,17 @@ fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failu
 }
 
 fn unlike(why: &Unlike) -> Failure {
-    let [sentence, ..] = words::unlike(why);
-    Failure::Usage(say!("these charts cannot be compared: {sentence}", sentence = raw(&sentence)))
+    Failure::Usage(say!(
+        "these charts cannot be compared: {sentence}",
+        sentence = Said::in_each(words::unlike(why))
+    ))
 }
 
 fn sides(args: &cli::Compare) -> Result<Vec<Side>, Failure> {
     let load = |path: &std::path::Path, profile: Option<ProfileName>| -> Result<Side, Failure> {
         let source = sources::load(path, 0)?;
         let name = match profile {
-            Some(p) => format!("{} under {}", source.name, p.name()),
+            Some(p) => told(&say!("{} under {p}", raw(&source.name))),
             None => source.name.clone(),
         };
         Ok(Side { name, source, profile })

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use g7_model::{Nanos, Problem};
+use g7_model::{Nanos, Problem, Said, say};
 use g7_rig::Source;
 use g7_rig::testing::plants;
 use g7_verify::{Budget, Evidence, Model, Question, Verdict, answer, ask, ask_with, is_open, words};
@@ -13,7 +13,7 @@ use super::patience::{Patience, Phase, Progress, Share, Stop};
 use super::{guilt, process, sarif, save, trace};
 use crate::cli::{Answers, Prove};
 use crate::failure::Failure;
-use crate::message::talk;
+use crate::message::tell;
 use crate::report::{self, Tally};
 use crate::sources;
 
@@ -125,7 +125,7 @@ impl File<'_> {
             if let Some(closed) = closed {
                 let model = closed.model();
                 if process::is_shared(&args.shared) {
-                    talk!("the questions with {plant} are not shared: process 0 answers them alone");
+                    tell(say!("the questions with `{plant}` are not shared: process 0 answers them alone"));
                 }
                 let answers = self.search(&model, &closed.questions, models);
                 self.tell(&model, &closed.questions, &answers, args.plant.as_deref())?;
@@ -181,7 +181,7 @@ impl File<'_> {
             }
             let mut one = self.answered(model, question, verdict)?;
             if let Some(plant) = plant.filter(|_| !one.own) {
-                one.claim = format!("{} with {plant}", one.claim);
+                one.claim = say!("{} with {}", one.claim, Said::foreign(plant));
             }
             self.found.answers.push(one);
         }
@@ -196,7 +196,7 @@ impl File<'_> {
     ) -> Result<Answered, Failure> {
         let source = self.source;
         let written = source.text.get(source.range(question.at)).unwrap_or_default();
-        let [claim, ..] = words::claim(written, model.compiled, question);
+        let claim = Said::in_each(words::claim(written, model.compiled, question));
         let run = match verdict {
             Verdict::Refuted(Evidence::Run(run)) => Some(run),
             _ => None,
@@ -215,11 +215,11 @@ impl File<'_> {
             }
             _ => 0,
         };
-        let [mut reason, ..] = words::reason(verdict, Nanos::new(time));
+        let mut reason = Said::in_each(words::reason(verdict, Nanos::new(time)));
         if let Verdict::Refuted(Evidence::Certificate(_)) = verdict {
-            reason.insert_str(0, "no run does it: ");
+            reason = say!("no run does it: {reason}");
         }
-        let [help, ..] = words::help(question, verdict);
+        let help = Said::in_each(words::help(question, verdict));
         Ok(Answered {
             place: source.place(question.at),
             claim,

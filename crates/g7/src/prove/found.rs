@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::Nanos;
+use g7_model::{Nanos, Said};
 use g7_verify::{Open, Reason, Verdict, words};
 
 use crate::report::Tally;
@@ -16,7 +16,7 @@ pub(super) const LISTED: usize = 12;
 pub(super) struct More {
     pub(super) listed: usize,
     /// The least number of scans, and the reason with it in words.
-    pub(super) least: Option<(usize, String)>,
+    pub(super) least: Option<(usize, Said)>,
     pub(super) hidden: BTreeMap<&'static str, usize>,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Found {
     /// The problems in words, with excerpts of the text.
     pub(super) trouble: String,
     /// Why nothing was asked.
-    pub(super) unasked: Option<String>,
+    pub(super) unasked: Option<Said>,
     /// A search was stopped before all was decided.
     pub(super) is_stopped: bool,
 }
@@ -44,15 +44,15 @@ pub(crate) struct Answered {
     /// `path:line:column` of what is asked about.
     pub(crate) place: String,
     /// The claim in words.
-    pub(crate) claim: String,
+    pub(crate) claim: Said,
     /// The author wrote it.
     pub(crate) own: bool,
     /// The evidence in one line.
-    pub(crate) reason: String,
+    pub(crate) reason: Said,
     /// The steps and transitions that break the claim, in a sentence; empty where nothing is to be added.
-    pub(crate) guilt: String,
+    pub(crate) guilt: Said,
     /// The way out; empty where none is known.
-    pub(crate) help: String,
+    pub(crate) help: Said,
     /// The answer.
     pub(crate) verdict: Verdict,
     /// The run that shows it, drawn; empty without one.
@@ -73,8 +73,7 @@ impl Found {
         });
         let Some((_, more)) = self.more.get_mut(at) else { return false };
         if more.least.as_ref().is_none_or(|(scans, _)| open.scans < *scans) {
-            let [words, ..] = words::reason(verdict, Nanos::ZERO);
-            more.least = Some((open.scans, words));
+            more.least = Some((open.scans, Said::in_each(words::reason(verdict, Nanos::ZERO))));
         }
         if more.listed < LISTED {
             more.listed += 1;

@@ -1,13 +1,14 @@
 //! The steps and transitions that break a claim, named: a conflict is of little use without the two transitions
 //! that are in it.
 
+use g7_model::{Said, say};
 use g7_verify::{Claim, Model, Run, blame};
 
 /// Most names in one sentence.
 const NAMES: usize = 6;
 
 /// A sentence about the end of a run; empty where the claim itself says all.
-pub(super) fn guilt(model: &Model<'_>, claim: &Claim, run: &Run) -> String {
+pub(super) fn guilt(model: &Model<'_>, claim: &Claim, run: &Run) -> Said {
     let found = || {
         let symbols = &model.compiled.symbols;
         let blame = blame(model, claim, run);
@@ -16,27 +17,28 @@ pub(super) fn guilt(model: &Model<'_>, claim: &Claim, run: &Run) -> String {
         (listed(steps), listed(transitions))
     };
     match claim {
-        Claim::NoConflict => format!("both are clearable at once: {}", found().1),
+        Claim::NoConflict => say!("both are clearable at once: {}", found().1),
         Claim::NoUnsafe => {
             let (steps, transitions) = found();
-            format!("step {steps} is active already when {transitions} activates it")
+            say!("step {steps} is active already when {transitions} activates it")
         }
-        Claim::NoDeadlock => format!("nothing leads on from the situation {{{}}}", found().0),
-        Claim::LeadsTo { .. } => format!("the effect can no longer come in the situation {{{}}}", found().0),
+        Claim::NoDeadlock => say!("nothing leads on from the situation {{{}}}", found().0),
+        Claim::LeadsTo { .. } => say!("the effect can no longer come in the situation {{{}}}", found().0),
         Claim::NoInstability => match found().1 {
             none if none.is_empty() => none,
-            transitions => format!("cleared again and again in one scan: {transitions}"),
+            transitions => say!("cleared again and again in one scan: {transitions}"),
         },
-        _ => String::new(),
+        _ => Said::default(),
     }
 }
 
-fn listed(names: impl Iterator<Item = String>) -> String {
+fn listed(names: impl Iterator<Item = String>) -> Said {
     let all: Vec<String> = names.collect();
     let more = all.len().saturating_sub(NAMES);
     let shown: Vec<&str> = all.iter().take(NAMES).map(String::as_str).collect();
+    let shown = Said::foreign(shown.join(", "));
     match more {
-        0 => shown.join(", "),
-        n => format!("{}, … ({n} more)", shown.join(", ")),
+        0 => shown,
+        n => say!("{shown}, … ({n} more)"),
     }
 }

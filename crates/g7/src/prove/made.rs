@@ -3,7 +3,7 @@
 
 use std::path::PathBuf;
 
-use g7_model::{Nanos, ProfileName, PropertyKind, say};
+use g7_model::{Nanos, ProfileName, PropertyKind, Said, say};
 use g7_rig::Source;
 use g7_verify::{Asked, Budget, Model, Verdict, is_open, stuck, words};
 
@@ -12,7 +12,7 @@ use super::{added, cover, save, trace};
 use crate::cli::Prove;
 use crate::failure::{Failure, raw};
 use crate::files;
-use crate::message::talk;
+use crate::message::{talk, tell, told};
 use crate::style;
 
 /// Refuses the files of several charts, or two files in one place, before anything is searched.
@@ -46,14 +46,23 @@ pub(super) fn saved(args: &Prove, source: &Source, saved: &save::Saved) -> Resul
     let Some(path) = &args.save else { return Ok(()) };
     if saved.tests.is_empty() {
         let none = saved.left.is_empty();
-        let why = if none { "no claim is refuted" } else { "no test can state what is refuted" };
-        talk!("nothing to save: {why}");
+        tell(if none {
+            say!("nothing to save: no claim is refuted")
+        } else {
+            say!("nothing to save: no test can state what is refuted")
+        });
     } else {
         added::write(path, source, &saved.tests)?;
-        wrote(path, &count(saved.tests.len(), "test of a refuted claim", "tests of refuted claims"));
+        wrote(
+            path,
+            &match saved.tests.len() {
+                1 => say!("1 test of a refuted claim"),
+                n => say!("{n} tests of refuted claims"),
+            },
+        );
     }
     for (claim, reason) in &saved.left {
-        talk!("  not saved: {claim}: {reason}");
+        talk!("  {}", told(&say!("not saved: {claim}: {reason}")));
     }
     Ok(())
 }
@@ -75,31 +84,37 @@ pub(super) fn scenarios(
     let known = cover::Known::of(asked, answers);
     let made = cover::cover(source, args.profile, &known, [&budget(&*first), &budget(&*whole)])?;
     if made.tests.is_empty() {
-        talk!("no scenario was found");
+        tell(say!("no scenario was found"));
     } else {
         added::write(path, source, &made.tests)?;
-        wrote(path, &count(made.tests.len(), "scenario", "scenarios"));
+        wrote(
+            path,
+            &match made.tests.len() {
+                1 => say!("1 scenario"),
+                n => say!("{n} scenarios"),
+            },
+        );
     }
     for (sort, rows) in made.coverage.sorts() {
         let reached = rows.values().filter(|r| r.hits > 0).count();
-        talk!("  {reached} of {} {sort} reached", rows.len());
+        talk!("  {}", told(&say!("{reached} of {} {} reached", rows.len(), sort.plural())));
     }
     for title in &made.unlike {
-        talk!("  {title} was left out: `g7 test` shows another run than the search");
+        talk!(
+            "  {}",
+            told(&say!("{} was left out: `g7 test` shows another run than the search", raw(title)))
+        );
     }
     if let Some(open) = made.open {
-        let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
-        talk!("  some run may reach more, or fewer scenarios do: {why}; {help}");
+        let why = Said::in_each(words::why(&open.reason));
+        let help = Said::in_each(words::way_on(&open.reason));
+        talk!("  {}", told(&say!("some run may reach more, or fewer scenarios do: {why}; {help}")));
     }
     Ok(())
 }
 
-fn wrote(path: &std::path::Path, what: &str) {
-    talk!("{}wrote{:#} {}: {what}", style::GOOD, style::GOOD, path.display());
-}
-
-fn count(n: usize, one: &str, many: &str) -> String {
-    format!("{n} {}", if n == 1 { one } else { many })
+fn wrote(path: &std::path::Path, what: &Said) {
+    crate::message::wrote(format!("{}: {}", path.display(), told(what)));
 }
 
 /// The error of assumptions that contradict each other: behind some run no input satisfies them, so
@@ -117,23 +132,28 @@ pub(super) fn contradiction(
     let Some(run) = stuck(model, budget) else { return Ok(None) };
     let assumed = source.document.properties().find(|p| matches!(p.kind, PropertyKind::Assume(_)));
     let place = assumed.map_or_else(|| source.name.clone(), |p| source.place(p.at.0));
-    let which = if model.assume.len() == 1 { "this assumption" } else { "the assumptions of this file" };
-    let (style, mut text) = (style::BAD, String::new());
+    let one = model.assume.len() == 1;
+    let which = if one { say!("this assumption") } else { say!("the assumptions of this file") };
+    let what = match run.moves.len() {
+        0 => say!("no input satisfies {which}"),
+        1 => say!("behind a run of 1 scan no input satisfies {which}"),
+        n => say!("behind a run of {n} scans no input satisfies {which}"),
+    };
+    let (style, error) = (style::BAD, told(&say!("error")));
+    let mut text = format!("{place}: {style}{error}{style:#}: {}\n", told(&what));
     match run.moves.len() {
-        0 => text.push_str(&format!("{place}: {style}error{style:#}: no input satisfies {which}\n")),
-        n => {
-            let scans = count(n, "scan", "scans");
-            text.push_str(&format!(
-                "{place}: {style}error{style:#}: behind a run of {scans} no input satisfies {which}\n"
-            ));
+        0 => {}
+        _ => {
             if let Some(drawer) = trace::Drawer::new(source, profile)? {
                 drawer.draw(&run.moves, "").lines().for_each(|line| text.push_str(&format!("  {line}\n")));
             }
         }
     }
-    let it = if model.assume.len() == 1 { "it" } else { "them" };
-    text.push_str(&format!(
-        "  help: weaken {it}: where no input is left there are no runs, and every claim would hold\n"
-    ));
+    let help = if one {
+        say!("weaken it: where no input is left there are no runs, and every claim would hold")
+    } else {
+        say!("weaken them: where no input is left there are no runs, and every claim would hold")
+    };
+    text.push_str(&format!("  {}\n", told(&say!("help: {}", help))));
     Ok(Some(text))
 }

@@ -21,6 +21,7 @@ mod workers;
 
 use std::path::Path;
 
+use g7_model::{Said, say};
 use g7_verify::Verdict;
 
 pub(crate) use apart::{compare, read_back};
@@ -79,7 +80,7 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         _ if shared.shard.is_some() => {}
         Answers::Text => {
             let stopped = all.iter().any(|f| f.is_stopped).then(|| patience.reason(&time));
-            output::summary(&all, stopped.as_deref())?;
+            output::summary(&all, stopped.as_ref())?;
         }
         Answers::Json => output::json(&all)?,
         Answers::Sarif => sarif::print(&all, args.all)?,
@@ -106,12 +107,12 @@ fn one(
     [whole, time]: [&Share; 2],
 ) -> Result<Found, Failure> {
     let stop = time.stop();
-    let unasked = |why: &str| {
-        let unasked = Some(format!("{} {why}", patience.reason(whole)));
+    let unasked = |when: Said| {
+        let unasked = Some(say!("{} {when}", patience.reason(whole)));
         Found { name: path.display().to_string(), unasked, is_stopped: true, ..Found::default() }
     };
     if stop() {
-        return Ok(unasked("before this file was read"));
+        return Ok(unasked(say!("before this file was read")));
     }
     let progress = Progress::default();
     let work = Work {
@@ -124,10 +125,10 @@ fn one(
     let (owned, seen) = (path.to_owned(), progress.clone());
     Ok(match Patience::wait(&stop, &progress, move || work.prove(&owned))? {
         Ok(found) => found?,
-        Err(Phase::Read) => unasked("while the file was read"),
-        Err(Phase::Compile) => unasked("while the chart and its questions were compiled"),
+        Err(Phase::Read) => unasked(say!("while the file was read")),
+        Err(Phase::Compile) => unasked(say!("while the chart and its questions were compiled")),
         Err(Phase::Search | Phase::Tell) => {
-            unasked(&format!("before one of {} questions was decided", seen.questions()))
+            unasked(say!("before one of {} questions was decided", seen.questions()))
         }
     })
 }

@@ -2,28 +2,43 @@
 
 use std::io::Write;
 
+use g7_model::{Said, say};
 use g7_verify::{Evidence, Open, Reason, Verdict, words};
 use serde_json::{Value, json};
 
 use super::found::{Answered, Found, LISTED};
-use crate::failure::Failure;
-use crate::message::talk;
+use crate::failure::{Failure, raw};
+use crate::message::{tell, told};
 use crate::style;
 
-pub(super) fn word(verdict: &Verdict) -> String {
-    let [word, ..] = words::verdict(verdict);
-    word
+/// The word for an answer.
+pub(super) fn word(verdict: &Verdict) -> Said {
+    Said::in_each(words::verdict(verdict))
+}
+
+/// The way out, on a line.
+fn help(out: &mut impl Write, what: &Said) -> Result<(), Failure> {
+    if !what.is_empty() {
+        writeln!(out, "  {}", told(&say!("help: {}", what)))?;
+    }
+    Ok(())
+}
+
+/// That a file or a question is not decided, with the reason behind it.
+fn not_decided(out: &mut impl Write, name: &str, why: &str) -> Result<(), Failure> {
+    let style = style::WARN;
+    writeln!(out, "{name}: {style}{}{style:#}: {why}", told(&say!("not decided")))?;
+    Ok(())
 }
 
 /// Prints the answers of a file that are not proved, and all of the author's; with `all` every answer.
 pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
     let mut out = anstream::stdout().lock();
     if let Some(why) = &found.unasked {
-        let style = style::WARN;
-        writeln!(out, "{}: {style}not decided{style:#}: {why}", found.name)?;
-        writeln!(out, "  help: allow more with --time")?;
+        not_decided(&mut out, &found.name, &told(why))?;
+        help(&mut out, &say!("allow more with --time"))?;
     }
-    let mut told: Vec<&Reason> = Vec::new();
+    let mut seen: Vec<&Reason> = Vec::new();
     for a in &found.answers {
         let proved = matches!(a.verdict, Verdict::Proved(_));
         if proved && !a.own && !all {
@@ -33,10 +48,10 @@ pub(super) fn text(found: &Found, all: bool) -> Result<(), Failure> {
             && !all
         {
             // All of one reason stand where the first of them does.
-            if told.contains(&&open.reason) {
+            if seen.contains(&&open.reason) {
                 continue;
             }
-            told.push(&open.reason);
+            seen.push(&open.reason);
             let is_like = |b: &&Answered| self::open(b).is_some_and(|o| o.reason == open.reason);
             let group: Vec<&Answered> = found.answers.iter().filter(is_like).collect();
             if group.len() > 1 {
@@ -63,65 +78,63 @@ fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
         Verdict::Refuted(_) => style::BAD,
         Verdict::Open(_) => style::WARN,
     };
-    writeln!(out, "{}: {style}{}{style:#}: {}", a.place, word(&a.verdict), a.claim)?;
+    writeln!(out, "{}: {style}{}{style:#}: {}", a.place, told(&word(&a.verdict)), told(&a.claim))?;
     if short {
         return Ok(());
     }
-    writeln!(out, "  {}", a.reason)?;
+    writeln!(out, "  {}", told(&a.reason))?;
     for line in a.chronogram.lines() {
         writeln!(out, "  {line}")?;
     }
     if let Some(last) = a.scans.last() {
-        writeln!(out, "  the last scan, {last}")?;
+        writeln!(out, "  {}", told(&say!("the last scan, {}", raw(last))))?;
     }
     if !a.guilt.is_empty() {
-        writeln!(out, "  {}", a.guilt)?;
+        writeln!(out, "  {}", told(&a.guilt))?;
     }
-    if !a.help.is_empty() {
-        writeln!(out, "  help: {}", a.help)?;
-    }
-    Ok(())
+    help(out, &a.help)
 }
 
 /// Prints questions that are not decided for one reason: the first ones with their places.
 fn undecided(out: &mut impl Write, found: &Found, group: &[&Answered]) -> Result<(), Failure> {
     let Some(first) = group.first() else { return Ok(()) };
-    let style = style::WARN;
     let known = open(first).and_then(|open| found.more.iter().find(|(reason, _)| *reason == open.reason));
     let known = known.map(|(_, more)| more);
     let mut more = known.map(|m| m.hidden.clone()).unwrap_or_default();
-    let listed = group.iter().filter_map(|a| Some((open(a)?.scans, &*a.reason)));
-    let counted = known.and_then(|m| m.least.as_ref()).map(|(scans, words)| (*scans, &**words));
-    let reason = listed.chain(counted).min_by_key(|(scans, _)| *scans).map_or("", |(_, words)| words);
+    let listed = group.iter().filter_map(|a| Some((open(a)?.scans, &a.reason)));
+    let counted = known.and_then(|m| m.least.as_ref()).map(|(scans, words)| (*scans, words));
+    let reason = listed
+        .chain(counted)
+        .min_by_key(|(scans, _)| *scans)
+        .map(|(_, words)| words.clone())
+        .unwrap_or_default();
     let n = group.len() + more.values().sum::<usize>();
-    writeln!(out, "{}: {style}not decided{style:#}: {n} questions", found.name)?;
-    writeln!(out, "  of each: {reason}")?;
+    not_decided(out, &found.name, &told(&say!("{n} questions")))?;
+    writeln!(out, "  {}", told(&say!("of each: {reason}")))?;
     for a in group.iter().take(LISTED) {
         let place = a.place.strip_prefix(&found.name).unwrap_or(&a.place).trim_start_matches(':');
-        writeln!(out, "  {place}: {}", a.claim)?;
+        writeln!(out, "  {place}: {}", told(&a.claim))?;
     }
     for a in group.iter().skip(LISTED) {
         *more.entry(a.rule).or_default() += 1;
     }
     if !more.is_empty() {
-        let kinds: Vec<String> = more.iter().map(|(rule, n)| format!("{n} of {rule}")).collect();
-        writeln!(out, "  … and {} (--all lists them)", kinds.join(", "))?;
+        let kinds: Vec<String> = more.iter().map(|(rule, n)| told(&say!("{n} of {}", raw(rule)))).collect();
+        writeln!(out, "  {}", told(&say!("… and {} (--all lists them)", raw(kinds.join(", ")))))?;
     }
-    if !first.help.is_empty() {
-        writeln!(out, "  help: {}", first.help)?;
-    }
-    Ok(())
+    help(out, &first.help)
 }
 
 /// Prints how many answers there are of each kind, and why there are no more.
-pub(super) fn summary(all: &[Found], stopped: Option<&str>) -> Result<(), Failure> {
+pub(super) fn summary(all: &[Found], stopped: Option<&Said>) -> Result<(), Failure> {
     let [proved, refuted, open] = counts(all);
     let mut out = anstream::stdout().lock();
-    let why = stopped.map(|why| format!("; {why}")).unwrap_or_default();
-    writeln!(out, "{proved} proved, {refuted} refuted, {open} not decided{why}")?;
+    let counted = say!("{proved} proved, {refuted} refuted, {open} not decided");
+    let counted = stopped.map_or_else(|| counted.clone(), |why| say!("{counted}; {why}"));
+    writeln!(out, "{}", told(&counted))?;
     let unasked = all.iter().filter(|f| f.unasked.is_some()).count();
     if unasked > 0 {
-        writeln!(out, "{unasked} of {} files without an answer", all.len())?;
+        writeln!(out, "{}", told(&say!("{unasked} of {} files without an answer", all.len())))?;
     }
     Ok(())
 }
@@ -161,7 +174,7 @@ pub(super) fn json(all: &[Found]) -> Result<(), Failure> {
 /// Prints each answer of a file as a line of JSON; tells why there is none.
 pub(super) fn lines(found: &Found) -> Result<(), Failure> {
     if let Some(why) = &found.unasked {
-        talk!("{}: not decided: {why}", found.name);
+        tell(say!("{}: not decided: {why}", raw(&found.name)));
     }
     let mut out = anstream::stdout().lock();
     found.answers.iter().try_for_each(|a| writeln!(out, "{}", row(a)))?;
@@ -172,14 +185,14 @@ pub(super) fn lines(found: &Found) -> Result<(), Failure> {
 /// An answer as an object.
 fn row(a: &Answered) -> Value {
     let mut row = json!({
-        "place": a.place, "claim": a.claim, "own": a.own, "verdict": word(&a.verdict), "reason": a.reason,
-        "help": a.help,
+        "place": a.place, "claim": &*a.claim, "own": a.own, "verdict": &*word(&a.verdict), "reason": &*a.reason,
+        "help": &*a.help,
     });
     if !a.chronogram.is_empty() {
         row["chronogram"] = json!(a.chronogram);
     }
     if !a.guilt.is_empty() {
-        row["guilt"] = json!(a.guilt);
+        row["guilt"] = json!(&*a.guilt);
     }
     if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
         row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();
@@ -197,5 +210,5 @@ pub(super) fn not_asked(found: &Found) -> Option<Value> {
 pub(super) fn trouble(found: &Found) -> Option<String> {
     let errors = Some(&found.trouble).filter(|t| !t.is_empty());
     let text = errors.map(|t| anstream::adapter::strip_str(t).to_string());
-    text.or_else(|| found.unasked.clone())
+    text.or_else(|| found.unasked.as_ref().map(ToString::to_string))
 }

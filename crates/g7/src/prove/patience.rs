@@ -10,9 +10,9 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use g7_host::{Clock, WallClock};
-use g7_model::{Nanos, say};
+use g7_model::{Nanos, Said, say};
 
-use crate::failure::{Failure, refused};
+use crate::failure::{Failure, raw, refused};
 
 /// Tells that the work is to stop.
 pub(super) type Stop = Arc<dyn Fn() -> bool + Send + Sync>;
@@ -142,14 +142,14 @@ impl Patience {
 
     /// Why a search was stopped: Ctrl-C was pressed, the whole time is over, or the part of it that a file
     /// has.
-    pub(super) fn reason(&self, whole: &Share) -> String {
-        let time = whole.time.plain();
+    pub(super) fn reason(&self, whole: &Share) -> Said {
+        let time = raw(whole.time.plain());
         if self.pressed.load(Ordering::Relaxed) {
-            "stopped by Ctrl-C".to_owned()
+            say!("stopped by Ctrl-C")
         } else if whole.now() >= whole.time {
-            format!("the time of {time} is over")
+            say!("the time of {time} is over")
         } else {
-            format!("the file's share of the time of {time} is used up")
+            say!("the file's share of the time of {time} is used up")
         }
     }
 

@@ -3,7 +3,7 @@
 //! A test states what the claim expects of the shortest run that breaks it. Each one was run
 //! before it is written, and it fails where the claim does.
 
-use g7_model::{ProfileName, Scenario};
+use g7_model::{ProfileName, Said, Scenario};
 use g7_page::saved::{Given, NO_RUN, UNSEEN, of_run, short, title};
 use g7_rig::{Bench, Source};
 use g7_verify::{Evidence, Model, Question, Verdict, words};
@@ -17,7 +17,7 @@ pub(super) struct Saved {
     /// The tests, in the order of the questions.
     pub(super) tests: Vec<Scenario>,
     /// Claims that are refuted without a test, each with the reason.
-    pub(super) left: Vec<(String, String)>,
+    pub(super) left: Vec<(Said, Said)>,
 }
 
 /// Adds the tests of refuted claims about charts on a bench.
@@ -32,8 +32,10 @@ pub(super) fn tests(
     for (question, verdict) in answered.0.iter().zip(answered.1) {
         let Some(Verdict::Refuted(evidence)) = verdict else { continue };
         let written = source.text.get(source.range(question.at)).unwrap_or_default();
-        let [claim, ..] = words::claim(written, model.compiled, question);
-        let title = title(&claim);
+        let claims = words::claim(written, model.compiled, question);
+        let title = title(&claims[0]);
+        let claim = || Said::in_each(claims.each_ref().map(|claim| short(claim)));
+        let reason = |told: g7_model::words::Told| Said::in_each(told.map(str::to_owned));
         let made = match evidence {
             Evidence::Run(run) => of_run(&Given { source, bench, model, question, run }, &title),
             Evidence::Certificate(_) => Err(NO_RUN),
@@ -41,8 +43,8 @@ pub(super) fn tests(
         match made {
             Ok(test) if saved.tests.contains(&test) => {}
             Ok(test) if fails(source, &test, profile)? => saved.tests.push(test),
-            Ok(_) => saved.left.push((short(&claim), UNSEEN[0].to_owned())),
-            Err([reason, ..]) => saved.left.push((short(&claim), reason.to_owned())),
+            Ok(_) => saved.left.push((claim(), reason(UNSEEN))),
+            Err(why) => saved.left.push((claim(), reason(why))),
         }
     }
     Ok(())

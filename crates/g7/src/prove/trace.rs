@@ -1,11 +1,12 @@
 //! Runs of the prover as chronograms, made by a run of the bench.
 
 use g7_host::{Chronogram, Recording, Runner, Signal, Style};
-use g7_model::{Nanos, ProfileName};
+use g7_model::{Nanos, ProfileName, Said, say};
 use g7_rig::{Bench, Role, Source};
 use g7_verify::Move;
 
-use crate::failure::Failure;
+use crate::failure::{Failure, raw};
+use crate::message::told;
 
 /// Most columns of a chronogram, least, and most for one scan.
 const COLUMNS: usize = 60;
@@ -85,7 +86,7 @@ impl Drawer {
     }
 
     /// The fault that ends a run, in words.
-    pub(super) fn fault(&self, moves: &[Move]) -> Option<String> {
+    pub(super) fn fault(&self, moves: &[Move]) -> Option<Said> {
         let mut fault = None;
         repeat(&self.bench, moves, |runner| {
             fault = runner.halt().map(|halt| self.bench.halt(runner, halt));
@@ -158,13 +159,13 @@ fn in_words(bench: &Bench, moves: &[Move]) -> Vec<String> {
             .map(|i| format!("{} = {}", i.name, bench.value_in(runner.state(), i).show(i.kind)))
             .collect();
         let new: Vec<&str> = all.iter().filter(|text| !before.contains(*text)).map(String::as_str).collect();
-        let inputs = if new.is_empty() { "the same inputs".to_owned() } else { new.join(", ") };
-        let now = Nanos::new(runner.state().now()).plain();
+        let inputs = if new.is_empty() { told(&say!("the same inputs")) } else { new.join(", ") };
+        let now = raw(Nanos::new(runner.state().now()).plain());
         let end = match runner.halt() {
-            Some(halt) => format!("a fault: {}", bench.halt(runner, halt)),
-            None => format!("{{{}}}", bench.situation(runner.state()).join(", ")),
+            Some(halt) => say!("a fault: {}", bench.halt(runner, halt)),
+            None => raw(format!("{{{}}}", bench.situation(runner.state()).join(", "))),
         };
-        found.push(format!("at {now}: {inputs}; then {end}"));
+        found.push(told(&say!("at {now}: {}; then {end}", raw(inputs))));
         before = all;
     });
     found

@@ -13,11 +13,11 @@ use super::outside::{self, Outside};
 use crate::cli::Run;
 use crate::ended::Ended;
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{note, talk, tell, told, wrote};
 use crate::progress::Progress;
 use crate::sources::Source;
 use crate::{files, style, values};
-use g7_model::{Nanos, say};
+use g7_model::{Nanos, Said, say};
 use g7_rig::{Bench, Conflicts, Item, Role};
 
 /// The length of a run if none is given.
@@ -70,21 +70,20 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     let until = (length, &ended);
     let halt = play(bench, sides, &mut recording, &script, until, &mut *clock, &mut live)?;
     if ended.is_so() {
-        talk!(
-            "ended at {}: what is asked for is written up to here",
-            Nanos::new(runner.state().now()).plain()
-        );
+        let now = raw(Nanos::new(runner.state().now()).plain());
+        tell(say!("ended at {now}: what is asked for is written up to here"));
     }
     let verdict = if let Some(halt) = halt {
         let place = bench.halt_place(halt).map_or_else(String::new, |at| format!("{}: ", source.place(at)));
-        let (bad, now) = (style::BAD, Nanos::new(runner.state().now()).plain());
-        talk!("{place}{bad}fault{bad:#} at {now}: {}", bench.halt(&runner, halt));
+        let now = raw(Nanos::new(runner.state().now()).plain());
+        let what = told(&say!("fault at {now}: {}", bench.halt(&runner, halt)));
+        talk!("{place}{}{what}{:#}", style::BAD, style::BAD);
         Verdict::Found
     } else {
         Verdict::Fine
     };
     if runner.missed() > 0 {
-        talk!("{} scans came too late and were skipped", runner.missed());
+        tell(say!("{} scans came too late and were skipped", runner.missed()));
     }
     if let Some((path, form)) = trace {
         write_trace(&recording, path, form)?;
@@ -102,10 +101,10 @@ fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(Nanos, &'b Item, Valu
     let mut script = Vec::new();
     for assign in &args.set {
         let Some(item) = bench.item(&assign.name) else {
-            return Err(Failure::Usage(say!("--set: {}", raw(bench.unknown(&assign.name)))));
+            return Err(Failure::Usage(say!("--set: {}", bench.unknown(&assign.name))));
         };
         let value = values::read(&assign.value, item.kind)
-            .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name), e = raw(&e))))?;
+            .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name))))?;
         script.push((assign.at, item, value));
     }
     script.sort_by_key(|(at, ..)| *at);
@@ -116,8 +115,10 @@ fn shown(bench: &Bench, args: &Run) -> Result<Vec<usize>, Failure> {
     let signals = bench.signals();
     let find = |name: &String| {
         signals.iter().position(|s| s.name == *name).ok_or_else(|| {
-            let near = bench.suggestions(name);
-            Failure::Usage(say!("--show: there is no `{name}`{near}", near = raw(&near)))
+            Failure::Usage(match bench.near(name) {
+                none if none.is_empty() => say!("--show: there is no `{name}`"),
+                near => say!("--show: there is no `{name}`; {near}"),
+            })
         })
     };
     args.show.iter().map(find).collect()
@@ -156,7 +157,7 @@ fn play(
             return Ok(Some(halt));
         }
         if let Some(conflict) = conflicts.of(bench, runner) {
-            talk!("{}note:{:#} {conflict}", style::WARN, style::WARN);
+            note(conflict);
         }
         if let Some(keeper) = live {
             keeper.tick(runner)?;
@@ -177,7 +178,7 @@ fn write_trace(recording: &Recording, path: &Path, form: Form) -> Result<(), Fai
     }
     .map_err(|e| Failure::Write(path.to_path_buf(), e))?;
     files::write(path, &bytes)?;
-    talk!("wrote {}", path.display());
+    wrote(path.display());
     Ok(())
 }
 
@@ -192,23 +193,26 @@ fn print(
     let mut out = anstream::stdout().lock();
     let state = runner.state();
     let situation = bench.situation(state).join(", ");
-    let plant = bench.plant.as_ref().map_or_else(String::new, |p| format!(" with plant {}", p.name));
-    writeln!(
-        out,
-        "{}{}{:#}{plant}: {} in {} scans of {}, now in {{{situation}}}\n",
-        style::STRONG,
-        source.name,
-        style::STRONG,
-        Nanos::new(state.now()).plain(),
-        state.scans(),
-        bench.period.plain(),
-    )?;
+    let (time, scans, period) =
+        (raw(Nanos::new(state.now()).plain()), state.scans(), raw(bench.period.plain()));
+    let situation = raw(format!("{{{situation}}}"));
+    let name = raw(format!("{}{}{:#}", style::STRONG, source.name, style::STRONG));
+    let ran = match &bench.plant {
+        Some(p) => {
+            say!(
+                "{name} with plant {}: {time} in {scans} scans of {period}, now in {situation}",
+                raw(&p.name)
+            )
+        }
+        None => say!("{name}: {time} in {scans} scans of {period}, now in {situation}"),
+    };
+    writeln!(out, "{}\n", told(&ran))?;
     let mut lanes: Vec<usize> = shown.to_vec();
     if lanes.is_empty() {
         lanes = Bench::moving(recording);
     }
     if lanes.is_empty() {
-        writeln!(out, "nothing moved{}", how_to_move(bench, runner))?;
+        writeln!(out, "{}", told(&nothing_moved(bench, runner)))?;
         return Ok(out.flush()?);
     }
     let left = lanes.len().saturating_sub(LANES);
@@ -218,27 +222,27 @@ fn print(
     let style = Style { columns, from: recording.start(), to, until: to };
     write!(out, "{}", Chronogram::new(recording, lanes, style))?;
     if left > 0 {
-        writeln!(
-            out,
+        let more = say!(
             "… and {left} more signals that changed; --show selects signals, --trace records all of them"
-        )?;
+        );
+        writeln!(out, "{}", told(&more))?;
     }
     Ok(out.flush()?)
 }
 
-/// Suggests an input to set: one that the plant does not drive, if possible a BOOL; empty if there
-/// is none.
-fn how_to_move(bench: &Bench, runner: &Runner) -> String {
+/// Tells that nothing moved, and suggests an input to set: one that the plant does not drive, if possible a
+/// BOOL.
+fn nothing_moved(bench: &Bench, runner: &Runner) -> Said {
     let inputs = || bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
     let free = || inputs().filter(|i| !bench.is_driven(runner, i));
     let Some(input) = free().find(|i| i.kind == Kind::Bool).or_else(|| free().next()) else {
-        return String::new();
+        return say!("nothing moved");
     };
     let value = if input.kind == Kind::Time { "1s" } else { "1" };
     let assign = format!("{}={value}@1s", input.name);
     let plain = |c: char| c.is_alphanumeric() || "_.=@".contains(c);
     let quote = if assign.chars().all(plain) { "" } else { "'" };
-    format!("; `--set {quote}{assign}{quote}` sets an input after 1s")
+    say!("nothing moved; `--set {quote}{assign}{quote}` sets an input after 1s")
 }
 
 /// The number of columns for the lanes: the width of the terminal without labels and notes.
@@ -283,14 +287,14 @@ pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, 
     }
     match played {
         Ok(state) => {
-            talk!("{} scans, every state as recorded", tape.scans());
+            tell(say!("{} scans, every state as recorded", tape.scans()));
             let mut out = anstream::stdout().lock();
             writeln!(out, "{{{}}}", bench.situation(&state).join(", "))?;
             out.flush()?;
             Ok(Verdict::Fine)
         }
         Err(d) => {
-            talk!("differs from the record at scan {} ({})", d.scan, d.now.plain());
+            tell(say!("differs from the record at scan {} ({})", d.scan, raw(d.now.plain())));
             Ok(Verdict::Found)
         }
     }

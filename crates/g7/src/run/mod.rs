@@ -14,7 +14,7 @@ use g7_model::say;
 use crate::attendant::Attendant;
 use crate::cli::Run;
 use crate::failure::{Failure, Verdict};
-use crate::message::talk;
+use crate::message::tell;
 use crate::sources::{self, Source};
 use crate::station::{self, More, Settings, Station};
 use crate::{files, view, wiring};
@@ -48,7 +48,7 @@ pub(crate) fn run(args: &Run) -> Result<Verdict, Failure> {
     let asked = args.headless || is_fmu || args.trace.is_some() || args.record.is_some() || args.real_time;
     if asked || !stdin().is_terminal() || !stdout().is_terminal() {
         if !asked {
-            talk!("no terminal: running headless; `g7 run --help` has the options");
+            tell(say!("no terminal: running headless; `g7 run --help` has the options"));
         }
         return headless::run(&bench, &source, args);
     }

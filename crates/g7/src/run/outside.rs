@@ -6,12 +6,12 @@ use g7_fmi::archive;
 use g7_fmi::description::{Causality, Description, Type, Variable, Version};
 use g7_fmi::library::{Instance, Value as Foreign};
 use g7_host::{Kind, Runner, Value};
-use g7_model::{Nanos, say};
+use g7_model::{Nanos, Said, say};
 use g7_rig::{Bench, Item, Role};
 
 use crate::failure::{Failure, raw};
 use crate::files;
-use crate::message::talk;
+use crate::message::note;
 use crate::scratch::Scratch;
 
 /// The plant: an instance and what is connected.
@@ -35,26 +35,27 @@ pub(crate) fn is_fmu(plant: Option<&str>) -> bool {
 impl Outside {
     /// Unpacks and loads an FMU and connects it: `wires` first, then what has the same name on both sides.
     pub(super) fn open(path: &Path, bench: &Bench, wires: &[(String, String)]) -> Result<Outside, Failure> {
-        let bad = |what: String| Failure::Usage(say!("{}: {what}", raw(path.display()), what = raw(&what)));
-        let all = archive::unpack(&files::read(path)?).map_err(bad)?;
+        let bad = |what: Said| Failure::Usage(say!("{}: {what}", raw(path.display())));
+        // The reader of FMUs has its sentences in English.
+        let its = |what: String| bad(raw(what));
+        let all = archive::unpack(&files::read(path)?).map_err(its)?;
         let text = all.iter().find(|(name, _)| name == "modelDescription.xml");
-        let text = text.ok_or_else(|| bad("it has no modelDescription.xml".to_owned()))?;
-        let text =
-            std::str::from_utf8(&text.1).map_err(|_| bad("its description is not UTF-8".to_owned()))?;
-        let what = Description::read(text).map_err(bad)?;
+        let text = text.ok_or_else(|| bad(say!("it has no modelDescription.xml")))?;
+        let text = std::str::from_utf8(&text.1).map_err(|_| bad(say!("its description is not UTF-8")))?;
+        let what = Description::read(text).map_err(its)?;
         fits(&what, bench.period).map_err(bad)?;
         let (to_plant, to_charts) = wired(&what, bench, wires).map_err(bad)?;
         let library = library(&what, &all).map_err(bad)?;
         let folder = unpacked(&all)?;
         let instance = Instance::new(&folder.path().join(library), &folder.path().join("resources"), &what)
-            .map_err(bad)?;
+            .map_err(its)?;
         let free = what.variables.iter().filter(|v| v.causality == Causality::Input);
         let free: Vec<&str> = free
             .filter(|v| !to_plant.iter().any(|(_, t)| t.name == v.name))
             .map(|v| v.name.as_str())
             .collect();
         if !free.is_empty() {
-            talk!("note: not wired, and with their first value: {}", free.join(", "));
+            note(say!("not wired, and with their first value: {}", raw(free.join(", "))));
         }
         let name = path.display().to_string();
         Ok(Outside { name, instance, to_plant, to_charts, reached: None, _folder: folder })
@@ -68,29 +69,29 @@ impl Outside {
     /// Goes on to the instant of the next scan, and brings its outputs to the charts.
     pub(super) fn step(&mut self, bench: &Bench, runner: &mut Runner) -> Result<(), Failure> {
         let now = runner.due();
-        let at = |what: String| {
-            Failure::Usage(say!("{} at {}: {what}", raw(&self.name), raw(now.plain()), what = raw(&what)))
-        };
+        let name = raw(&self.name);
+        let at = |what: Said| Failure::Usage(say!("{} at {}: {what}", name, raw(now.plain())));
+        let its = |what: String| at(raw(what));
         if self.reached.is_none() {
-            self.instance.begin().map_err(at)?;
+            self.instance.begin().map_err(its)?;
         }
         for (from, to) in &self.to_plant {
             if let Some(item) = bench.items.get(*from) {
-                self.instance.set(to, &out(bench, runner, item, to.ty)).map_err(at)?;
+                self.instance.set(to, &out(bench, runner, item, to.ty)).map_err(its)?;
             }
         }
         let ends = match self.reached {
             None => self.instance.ready().map(|()| false),
             Some(from) => self.instance.step(from.as_seconds(), (now - from).as_seconds()),
         };
-        if ends.map_err(at)? {
-            return Err(at("the FMU ends the simulation".to_owned()));
+        if ends.map_err(its)? {
+            return Err(at(say!("the FMU ends the simulation")));
         }
         for (from, to) in &self.to_charts {
             if let Some(item) = bench.items.get(*to) {
-                let value = self.instance.get(from).map_err(at)?;
+                let value = self.instance.get(from).map_err(its)?;
                 let value = taken(item, &value)
-                    .ok_or_else(|| at(format!("`{}` cannot hold {value:?} of `{}`", item.name, from.name)))?;
+                    .ok_or_else(|| at(say!("`{}` cannot hold `{value:?}` of `{}`", item.name, from.name)))?;
                 bench.set(runner, item, &value);
             }
         }
@@ -100,22 +101,22 @@ impl Outside {
 }
 
 /// Refuses a period that the FMU cannot make steps of.
-fn fits(what: &Description, period: Nanos) -> Result<(), String> {
+fn fits(what: &Description, period: Nanos) -> Result<(), Said> {
     let Some(step) = what.fixed_step.filter(|s| *s > 0.0) else { return Ok(()) };
     let times = period.as_seconds() / step;
     if times.round() >= 1.0 && (times - times.round()).abs() < 1e-6 {
         return Ok(());
     }
-    Err(format!(
+    Err(say!(
         "its steps are multiples of {step} s, and the scans are {} apart; --scan sets another time",
-        period.plain()
+        raw(period.plain())
     ))
 }
 
 type Wires = (Vec<(usize, Variable)>, Vec<(Variable, usize)>);
 
 /// The connections, checked for their types.
-fn wired(what: &Description, bench: &Bench, wires: &[(String, String)]) -> Result<Wires, String> {
+fn wired(what: &Description, bench: &Bench, wires: &[(String, String)]) -> Result<Wires, Said> {
     let (mut to_plant, mut to_charts): Wires = (Vec::new(), Vec::new());
     let place = |name: &str, role: fn(&Role) -> bool| {
         bench.items.iter().position(|i| i.name == *name && role(&i.role))
@@ -127,12 +128,12 @@ fn wired(what: &Description, bench: &Bench, wires: &[(String, String)]) -> Resul
         let out = place(from, is_output).zip(input(to));
         let back = what.variable(from).filter(|v| v.causality != Causality::Input).zip(place(to, is_input));
         match (out, back) {
-            (Some(_), Some(_)) => return Err(format!("--wire {from}={to}: both directions are possible")),
+            (Some(_), Some(_)) => return Err(say!("`--wire {from}={to}`: both directions are possible")),
             (Some((at, v)), None) => to_plant.push((at, v.clone())),
             (None, Some((v, at))) => to_charts.push((v.clone(), at)),
             (None, None) => {
-                return Err(format!(
-                    "--wire {from}={to}: neither an output of the charts and an input of the FMU, nor the other way"
+                return Err(say!(
+                    "`--wire {from}={to}`: neither an output of the charts and an input of the FMU, nor the other way"
                 ));
             }
         }
@@ -153,12 +154,12 @@ fn wired(what: &Description, bench: &Bench, wires: &[(String, String)]) -> Resul
         }
     }
     if to_plant.is_empty() && to_charts.is_empty() {
-        return Err("nothing has the same name here and there; --wire OUTPUT=INPUT connects".to_owned());
+        return Err(say!("nothing has the same name here and there; --wire OUTPUT=INPUT connects"));
     }
     let pairs = to_plant.iter().map(|(at, v)| (*at, v)).chain(to_charts.iter().map(|(v, at)| (*at, v)));
     for (item, v) in pairs.filter_map(|(at, v)| Some((bench.items.get(at)?, v))) {
         if !go_together(item.kind, v.ty) {
-            return Err(format!("`{}` is {} here, and `{}` is {:?} there", item.name, item.ty, v.name, v.ty));
+            return Err(say!("`{}` is {} here, and `{}` is `{:?}` there", item.name, item.ty, v.name, v.ty));
         }
     }
     let mut twice: Vec<&str> = to_plant.iter().map(|(_, v)| v.name.as_str()).collect();
@@ -166,7 +167,7 @@ fn wired(what: &Description, bench: &Bench, wires: &[(String, String)]) -> Resul
     let many = twice.len();
     twice.sort_unstable();
     twice.dedup();
-    if twice.len() < many { Err("an input is wired twice".to_owned()) } else { Ok((to_plant, to_charts)) }
+    if twice.len() < many { Err(say!("an input is wired twice")) } else { Ok((to_plant, to_charts)) }
 }
 
 /// True if values of these types can be handed over. Whole numbers may be reals there, which FMI 2.0 needs
@@ -220,17 +221,17 @@ fn taken(item: &Item, value: &Foreign) -> Option<Value> {
 }
 
 /// The path of the library for this machine in the archive.
-fn library(what: &Description, all: &[archive::File]) -> Result<String, String> {
+fn library(what: &Description, all: &[archive::File]) -> Result<String, Said> {
     let version = match what.version {
         Version::V2 => g7_codegen::fmu::Version::V2,
         Version::V3 => g7_codegen::fmu::Version::V3,
     };
     let folder = version.folder(std::env::consts::OS, std::env::consts::ARCH);
-    let folder = folder.ok_or("FMI has no name for this machine")?;
+    let folder = folder.ok_or_else(|| say!("FMI has no name for this machine"))?;
     let path = format!("binaries/{folder}/{}{}", what.identifier, std::env::consts::DLL_SUFFIX);
     match all.iter().any(|(name, _)| *name == path) {
         true => Ok(path),
-        false => Err(format!("it has no library for this machine ({path})")),
+        false => Err(say!("it has no library for this machine (`{path}`)")),
     }
 }
 

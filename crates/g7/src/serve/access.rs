@@ -19,7 +19,7 @@ use std::time::Duration;
 
 use axum::http::StatusCode;
 use g7_host::utc_millis;
-use g7_model::{Nanos, say};
+use g7_model::{Nanos, Said, say};
 use g7_store::users::{Role, SessionHash, UserError, Users, session_hash};
 use serde_json::json;
 use tokio::sync::{Semaphore, watch};
@@ -96,7 +96,7 @@ fn lock<T>(of: &Mutex<T>) -> MutexGuard<'_, T> {
     of.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-fn full(text: &str) -> Refusal {
+fn full(text: Said) -> Refusal {
     Refusal::new(StatusCode::TOO_MANY_REQUESTS, text)
 }
 
@@ -105,7 +105,7 @@ pub(super) fn refusal(error: UserError) -> Refusal {
     match error {
         UserError::Refused(why) => Refusal::new(StatusCode::CONFLICT, why),
         store @ UserError::Store(_) => {
-            Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, format!("{store}; nothing was changed"))
+            Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, say!("{}; nothing was changed", store.said()))
         }
     }
 }
@@ -232,9 +232,9 @@ impl Access {
     /// Lets a guess of a password wait for its check, or refuses it.
     async fn guess(&self, from: IpAddr) -> Result<tokio::sync::SemaphorePermit<'_>, Refusal> {
         if !lock(&self.throttle).allows(from, utc_millis()) {
-            return Err(full("too many tries from this address: wait a minute"));
+            return Err(full(say!("too many tries from this address: wait a minute")));
         }
-        let busy = || full("too many people log in at this moment: try again");
+        let busy = || full(say!("too many people log in at this moment: try again"));
         let _place = self.waiting.try_acquire().map_err(|_| busy())?;
         match tokio::time::timeout(PATIENCE, self.checks.acquire()).await {
             Ok(Ok(permit)) => Ok(permit),
@@ -259,7 +259,7 @@ impl Access {
                 let known = known.into_iter().find(|user| user.name.eq_ignore_ascii_case(&name));
                 let user = known.map_or_else(|| "(unknown)".to_owned(), |user| user.name);
                 access.audit.event("warning", "login-refused", None, &json!({ "from": from, "user": user }));
-                Refusal::new(StatusCode::UNAUTHORIZED, "name or password is wrong")
+                Refusal::new(StatusCode::UNAUTHORIZED, say!("name or password is wrong"))
             })
         })
         .await
@@ -319,8 +319,12 @@ impl Access {
         let _permit = self.guess(from).await?;
         let access = Arc::clone(self);
         aside(move || {
-            let wrong =
-                || Refusal::new(StatusCode::UNAUTHORIZED, "the code is wrong, or there is an admin already");
+            let wrong = || {
+                Refusal::new(
+                    StatusCode::UNAUTHORIZED,
+                    say!("the code is wrong, or there is an admin already"),
+                )
+            };
             {
                 let mut kept = lock(&access.code);
                 let asked = kept.as_mut().ok_or_else(wrong)?;
@@ -374,7 +378,9 @@ impl Access {
     }
 
     fn must(&self, who: &Who, kind: &str, data: &serde_json::Value) -> Result<(), Refusal> {
-        self.audit.must(who, kind, data).map_err(|why| Refusal::new(StatusCode::INSUFFICIENT_STORAGE, why))
+        self.audit
+            .must(who, kind, data)
+            .map_err(|why| Refusal::new(StatusCode::INSUFFICIENT_STORAGE, Said::foreign(why)))
     }
 
     /// The users.

@@ -10,6 +10,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Json, Router};
+use g7_model::{Said, say};
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::Semaphore;
@@ -19,6 +20,7 @@ use super::fingerprint;
 use super::folder::{LARGEST, Wanted, Written};
 use super::refusal::Refusal;
 use super::shared::{Inner, Shared};
+use crate::failure::raw;
 use crate::who::Who;
 
 /// Greatest size of a small body, and longest time for it.
@@ -76,7 +78,7 @@ async fn read(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
 
 /// The deed of a person at a file, in the log before it is done.
 pub(super) fn told(shared: &Inner, who: &Who, kind: &str, data: &Value) -> Result<(), Refusal> {
-    let unwritten = |why| Refusal::new(StatusCode::INSUFFICIENT_STORAGE, why);
+    let unwritten = |why: String| Refusal::new(StatusCode::INSUFFICIENT_STORAGE, Said::foreign(why));
     shared.audit.must(who, kind, data).map_err(unwritten)
 }
 
@@ -155,10 +157,11 @@ async fn delete(State(shared): State<Shared>, Extension(who): Extension<Who>, re
 
 async fn keep(State(shared): State<Shared>, Query(at): Query<At>, request: Request) -> Answer {
     if shared.folder.is_read_only() {
-        return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
+        return Err(Refusal::read_only());
     }
     let bytes = body(request).await?;
-    let text = String::from_utf8(bytes).map_err(|_| Refusal::bad("an unsaved copy must be UTF-8 text"))?;
+    let text =
+        String::from_utf8(bytes).map_err(|_| Refusal::bad(say!("an unsaved copy must be UTF-8 text")))?;
     aside(move || shared.drafts.keep(&at.path, text)).await?;
     Ok(StatusCode::NO_CONTENT.into_response())
 }
@@ -170,7 +173,7 @@ async fn drafts(State(shared): State<Shared>) -> Answer {
 
 async fn drop_draft(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
     if shared.folder.is_read_only() {
-        return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
+        return Err(Refusal::read_only());
     }
     aside(move || shared.drafts.drop(&at.path)).await?;
     Ok(StatusCode::NO_CONTENT.into_response())
@@ -193,20 +196,22 @@ fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
         (Some("*"), None) => Ok(Wanted::Any),
         (Some(tag), None) => {
             let bare = tag.strip_prefix('"').and_then(|t| t.strip_suffix('"'));
-            let bare = bare.ok_or_else(|| Refusal::bad("`If-Match` needs one hash in quotes"))?;
+            let bare = bare.ok_or_else(|| Refusal::bad(say!("`If-Match` needs one hash in quotes")))?;
             Ok(Wanted::Hash(bare.to_owned()))
         }
         (None, Some("*")) => Ok(Wanted::Absent),
         _ => Err(Refusal::new(
             StatusCode::PRECONDITION_REQUIRED,
-            "a file is written with `If-Match` and the hash it was read with, or `If-None-Match: *` for a new one",
+            say!(
+                "a file is written with `If-Match` and the hash it was read with, or `If-None-Match: *` for a new one"
+            ),
         )),
     }
 }
 
 pub(super) async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
     let bytes = body(request).await?;
-    serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(format!("this request means nothing: {e}")))
+    serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(say!("this request means nothing: {}", raw(e))))
 }
 
 /// Reads a small body, also of someone who is not known yet: whoever is slow takes nobody's place.
@@ -214,16 +219,18 @@ pub(super) async fn small_json<T: for<'a> Deserialize<'a>>(request: Request) -> 
     let bytes = axum::body::to_bytes(Body::new(request.into_body()), SMALL);
     let bytes = match tokio::time::timeout(SMALL_SLOWEST, bytes).await {
         Ok(Ok(bytes)) => bytes,
-        Ok(Err(_)) => return Err(Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, "this is too large")),
-        Err(_) => return Err(Refusal::new(StatusCode::REQUEST_TIMEOUT, "this took too long to arrive")),
+        Ok(Err(_)) => return Err(Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, say!("this is too large"))),
+        Err(_) => {
+            return Err(Refusal::new(StatusCode::REQUEST_TIMEOUT, say!("this took too long to arrive")));
+        }
     };
-    serde_json::from_slice(&bytes).map_err(|_| Refusal::bad("this request means nothing"))
+    serde_json::from_slice(&bytes).map_err(|_| Refusal::bad(say!("this request means nothing")))
 }
 
 /// Reads a body of limited size in a limited time.
 async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
     let too_large = || {
-        let text = format!("this is larger than {} MB: nothing was written", LARGEST >> 20);
+        let text = say!("this is larger than {} MB: nothing was written", LARGEST >> 20);
         Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, text)
     };
     let length =
@@ -231,8 +238,9 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
     if length.is_some_and(|l| l > LARGEST as u64) {
         return Err(too_large());
     }
-    let late =
-        || Refusal::new(StatusCode::REQUEST_TIMEOUT, "this took too long to arrive: nothing was written");
+    let late = || {
+        Refusal::new(StatusCode::REQUEST_TIMEOUT, say!("this took too long to arrive: nothing was written"))
+    };
     let _place = BODIES.acquire().await.map_err(|_| late())?;
     let bytes = axum::body::to_bytes(Body::new(request.into_body()), LARGEST);
     match tokio::time::timeout(SLOWEST, bytes).await {
@@ -245,6 +253,6 @@ async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
 /// The text of a chart, for a run.
 pub(super) async fn chart(shared: &Shared, name: &str) -> Result<String, String> {
     let (folder, name) = (Arc::clone(&shared.folder), name.to_owned());
-    let bytes = aside(move || folder.read(&name)).await.map_err(|r| r.text)?;
+    let bytes = aside(move || folder.read(&name)).await.map_err(|r| r.text.to_string())?;
     Ok(String::from_utf8_lossy(&bytes).into_owned())
 }

@@ -1,6 +1,7 @@
 //! Work that waits for the disk, on a thread of its own.
 
 use axum::http::StatusCode;
+use g7_model::say;
 
 use super::refusal::Refusal;
 
@@ -10,6 +11,6 @@ pub(super) async fn aside<T: Send + 'static>(
 ) -> Result<T, Refusal> {
     let done = tokio::task::spawn_blocking(work).await;
     done.unwrap_or_else(|_| {
-        Err(Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, "this failed; nothing was changed"))
+        Err(Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, say!("this failed; nothing was changed")))
     })
 }

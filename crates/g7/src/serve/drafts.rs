@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 use axum::http::StatusCode;
+use g7_model::{Said, say};
 use serde::{Deserialize, Serialize};
 
 use super::file_names;
@@ -56,19 +57,19 @@ impl Drafts {
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         let place = self.place(path);
         let draft = Draft { path: path.to_owned(), text };
-        let bytes = serde_json::to_vec(&draft).map_err(|e| Refusal::bad(e.to_string()))?;
+        let bytes = serde_json::to_vec(&draft).map_err(|e| Refusal::bad(Said::foreign(e.to_string())))?;
         let others: Vec<u64> = self
             .entries()
             .filter(|p| *p != place)
             .filter_map(|p| Some(fs::metadata(p).ok()?.len()))
             .collect();
         if others.len() >= MOST || others.iter().sum::<u64>() + bytes.len() as u64 > LARGEST {
-            let text = "there are too many unsaved copies: save or close a file";
+            let text = say!("there are too many unsaved copies: save or close a file");
             return Err(Refusal::new(StatusCode::INSUFFICIENT_STORAGE, text));
         }
         self.make_folder()
             .and_then(|()| g7_host::write_whole(&place, &bytes))
-            .map_err(|e| Refusal::io("the unsaved copy", &e))
+            .map_err(|e| Refusal::io(path, &e))
     }
 
     /// All copies, ordered by name.
@@ -86,7 +87,7 @@ impl Drafts {
         file_names::path(path).map_err(Refusal::bad)?;
         let _turn = self.turn.lock().unwrap_or_else(PoisonError::into_inner);
         match fs::remove_file(self.place(path)) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Refusal::io("the unsaved copy", &e)),
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Refusal::io(path, &e)),
             _ => Ok(()),
         }
     }

@@ -19,6 +19,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
 use axum::{Extension, Json, Router};
 use g7_host::utc_millis;
+use g7_model::say;
 use g7_store::log::{Filter, Reader};
 use g7_store::users::Role;
 use serde::Deserialize;
@@ -30,6 +31,7 @@ use super::aside::aside;
 use super::guard::{COOKIE, peer};
 use super::refusal::Refusal;
 use super::shared::Shared;
+use crate::failure::raw;
 use crate::who::Who;
 
 type Answer = Result<Response, Refusal>;
@@ -50,7 +52,7 @@ pub(super) fn routes() -> Router<Shared> {
 
 fn access(shared: &Shared) -> Result<Arc<Access>, Refusal> {
     let none =
-        || Refusal::new(StatusCode::NOT_FOUND, "this server has no users: `g7 serve --users FILE` has");
+        || Refusal::new(StatusCode::NOT_FOUND, say!("this server has no users: `g7 serve --users FILE` has"));
     shared.access.clone().ok_or_else(none)
 }
 
@@ -186,7 +188,10 @@ struct Wanted {
 
 async fn log(State(shared): State<Shared>, Query(wanted): Query<Wanted>) -> Answer {
     let none = || {
-        Refusal::new(StatusCode::NOT_FOUND, "there is no log: `log` in [controller] of the io file names one")
+        Refusal::new(
+            StatusCode::NOT_FOUND,
+            say!("there is no log: `log` in [controller] of the io file names one"),
+        )
     };
     let path = shared.log.clone().ok_or_else(none)?;
     let facts = shared.audit.facts();
@@ -196,7 +201,7 @@ async fn log(State(shared): State<Shared>, Query(wanted): Query<Wanted>) -> Answ
     let rows = aside(move || {
         let read = || Reader::open(&path)?.rows(&filter, PAGE + 1);
         read().map_err(|e| {
-            Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, format!("the log cannot be read: {e}"))
+            Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, say!("the log cannot be read: {}", raw(e)))
         })
     })
     .await?;

@@ -5,6 +5,8 @@
 
 use std::path::PathBuf;
 
+use g7_model::{Said, say};
+
 /// Greatest length of a path, in bytes.
 const LONGEST: usize = 1024;
 /// Greatest depth of a path, in folders.
@@ -14,19 +16,19 @@ pub(super) const DEEPEST: usize = 16;
 const ENDINGS: [&str; 2] = ["g7", "svg"];
 
 /// The path below the folder, or the reason why the name is refused.
-pub(super) fn path(name: &str) -> Result<PathBuf, String> {
+pub(super) fn path(name: &str) -> Result<PathBuf, Said> {
     if name.is_empty() || name.len() > LONGEST {
-        return Err("a file needs a name of at most 1024 letters".to_owned());
+        return Err(say!("a file needs a name of at most 1024 letters"));
     }
     let parts: Vec<&str> = name.split('/').collect();
     if parts.len() > DEEPEST {
-        return Err(format!("`{}` lies too deep", shown(name)));
+        return Err(say!("`{}` lies too deep", shown(name)));
     }
     if let Some(why) = parts.iter().find_map(|p| fault(p)) {
-        return Err(format!("`{}` cannot be used here: {why}", shown(name)));
+        return Err(say!("`{}` cannot be used here: {why}", shown(name)));
     }
     if !is_served(name) && !is_io(name) {
-        return Err(format!(
+        return Err(say!(
             "`{}` is neither a chart nor an .svg picture: other files are not served",
             shown(name)
         ));
@@ -48,26 +50,26 @@ pub(super) fn is_io(name: &str) -> bool {
 }
 
 /// The fault of the name of a file or folder, if it has one.
-pub(super) fn fault(part: &str) -> Option<&'static str> {
+pub(super) fn fault(part: &str) -> Option<Said> {
     if part.is_empty() {
-        return Some("a part of it is empty");
+        return Some(say!("a part of it is empty"));
     }
     if part == ".." || part == "." {
-        return Some("it leads out of the folder");
+        return Some(say!("it leads out of the folder"));
     }
     if part.starts_with('.') {
-        return Some("hidden files are left alone");
+        return Some(say!("hidden files are left alone"));
     }
     if part.len() > 200 {
-        return Some("a part of it is too long");
+        return Some(say!("a part of it is too long"));
     }
     if part.chars().any(|c| c.is_control() || "\\:*?\"<>|".contains(c)) {
-        return Some("it has a letter that names of files cannot have everywhere");
+        return Some(say!("it has a letter that names of files cannot have everywhere"));
     }
     if part.ends_with(['.', ' ']) || part.starts_with(' ') {
-        return Some("a part of it begins or ends with a space, or ends with a dot");
+        return Some(say!("a part of it begins or ends with a space, or ends with a dot"));
     }
-    is_device(part).then_some("it is the name of a device")
+    is_device(part).then(|| say!("it is the name of a device"))
 }
 
 /// True for names that Windows treats as devices, whatever the extension.

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use axum::http::StatusCode;
+use g7_model::say;
 
 use super::file_names;
 use super::fingerprint;
@@ -111,7 +112,7 @@ impl Folder {
         let present = self.bytes(&path, name)?;
         let present = present.ok_or_else(|| Refusal::io(name, &io::ErrorKind::NotFound.into()))?;
         if hash.is_some_and(|h| h != fingerprint::hash(&present)) {
-            let text = format!("{name} was changed outside; it is left as it is");
+            let text = say!("`{name}` was changed outside; it is left as it is");
             return Err(Refusal::new(StatusCode::PRECONDITION_FAILED, text));
         }
         fs::remove_file(&path).map_err(|e| Refusal::io(name, &e))
@@ -120,7 +121,7 @@ impl Folder {
     /// Takes the lock for a change; refuses if the folder is read-only.
     fn change(&self) -> Result<MutexGuard<'_, ()>, Refusal> {
         if self.read_only {
-            return Err(Refusal::forbidden("this server was started with --read-only: nothing is written"));
+            return Err(Refusal::read_only());
         }
         Ok(self.turn.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -129,7 +130,7 @@ impl Folder {
     fn place(&self, name: &str) -> Result<PathBuf, Refusal> {
         let path = self.root.join(file_names::path(name).map_err(Refusal::bad)?);
         let outside =
-            || Refusal::forbidden(format!("{name} is or goes through a link that leads out of the folder"));
+            || Refusal::forbidden(say!("`{name}` is or goes through a link that leads out of the folder"));
         match fs::canonicalize(&path) {
             Ok(real) if real.starts_with(&self.root) => return Ok(real),
             Ok(_) => return Err(outside()),
@@ -165,10 +166,10 @@ impl Folder {
         };
         // Opening a pipe or a device might block or have an effect.
         if !meta.is_file() {
-            return Err(Refusal::forbidden(format!("{name} is not a regular file")));
+            return Err(Refusal::forbidden(say!("`{name}` is not a regular file")));
         }
         let too_large = || {
-            let text = format!("{name} is larger than {} MB: the editor does not open it", LARGEST >> 20);
+            let text = say!("`{name}` is larger than {} MB: the editor does not open it", LARGEST >> 20);
             Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, text)
         };
         if meta.len() > LARGEST as u64 {

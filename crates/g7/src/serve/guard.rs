@@ -15,6 +15,7 @@ use axum::http::{HeaderMap, HeaderValue, Method, StatusCode};
 use axum::middleware::Next;
 use axum::response::{IntoResponse, Response};
 use g7_host::utc_millis;
+use g7_model::say;
 use g7_store::users::Role;
 use serde_json::json;
 
@@ -138,16 +139,17 @@ impl Guard {
         if self.foreign.throttle().allows(from, utc_millis()) {
             self.audit.event("warning", "foreign-request", None, &json!({ "from": from, "what": what }));
         }
-        Refusal::forbidden("this request comes from another site: it is not answered")
+        Refusal::forbidden(say!("this request comes from another site: it is not answered"))
     }
 
     /// Who asks; `None` where nobody has to be known.
     fn judge(&self, request: &Request) -> Result<Option<Who>, Refusal> {
         let headers = request.headers();
-        let host = only(headers, &header::HOST)?.ok_or_else(|| Refusal::bad("this request names no host"))?;
+        let host =
+            only(headers, &header::HOST)?.ok_or_else(|| Refusal::bad(say!("this request names no host")))?;
         if !self.is_ours(host) {
-            return Err(Refusal::forbidden(format!(
-                "this server answers at {}://{}/ only, not under other names",
+            return Err(Refusal::forbidden(say!(
+                "this server answers at `{}://{}/` only, not under other names",
                 self.scheme(),
                 self.bound
             )));
@@ -172,9 +174,11 @@ impl Guard {
         let Some(who) = self.known(request)? else {
             let what = match self.pass {
                 Pass::Token(_) => {
-                    "this needs the whole address that `g7 serve` printed when it was started, with its token"
+                    say!(
+                        "this needs the whole address that `g7 serve` printed when it was started, with its token"
+                    )
                 }
-                Pass::Users(_) => "this needs a user: log in",
+                Pass::Users(_) => say!("this needs a user: log in"),
             };
             return Err(Refusal::new(StatusCode::UNAUTHORIZED, what));
         };
@@ -273,7 +277,7 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>
     let mut all = headers.get_all(name).iter();
     let Some(first) = all.next() else { return Ok(None) };
     let text = first.to_str().ok().filter(|_| all.next().is_none());
-    text.map(Some).ok_or_else(|| Refusal::forbidden(format!("the header `{name}` means nothing")))
+    text.map(Some).ok_or_else(|| Refusal::forbidden(say!("the header `{name}` means nothing")))
 }
 
 /// Compares in constant time, so that the time does not reveal where the texts differ.

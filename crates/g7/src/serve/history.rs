@@ -11,6 +11,7 @@ use axum::response::{IntoResponse, Response};
 use axum::routing::get;
 use axum::{Json, Router};
 use g7_host::{Kind, Value as Word};
+use g7_model::say;
 use g7_store::StoreError;
 use g7_store::history::{Overview, Piece, Reader, Signal, Span, lane};
 use serde::Deserialize;
@@ -20,6 +21,7 @@ use tokio::sync::Semaphore;
 use super::aside::aside;
 use super::refusal::Refusal;
 use super::shared::Shared;
+use crate::failure::raw;
 use crate::history::{Csv, Sink, rows};
 
 /// Answers that are made at the same time; this bounds the memory.
@@ -61,13 +63,13 @@ impl Part {
     fn signals(&self, overview: &Overview) -> Result<Vec<(i64, Signal)>, Refusal> {
         let asked: Vec<&str> = self.signals.split(',').filter(|id| !id.is_empty()).collect();
         if asked.len() > SIGNALS {
-            return Err(Refusal::bad(format!("these are too many signals: {SIGNALS} at most")));
+            return Err(Refusal::bad(say!("these are too many signals: {SIGNALS} at most")));
         }
         let find = |id: &str| {
             let id = id.parse::<i64>().ok()?;
             overview.signals.iter().find(|(known, _)| *known == id).cloned()
         };
-        let known = |id| find(id).ok_or_else(|| Refusal::bad(format!("the record has no signal {id}")));
+        let known = |id| find(id).ok_or_else(|| Refusal::bad(say!("the record has no signal `{id}`")));
         asked.into_iter().map(known).collect()
     }
 }
@@ -81,7 +83,8 @@ async fn read<T: Send + 'static>(
     let _turn = READERS.acquire().await.ok();
     aside(move || {
         let Some(path) = shared.history.get() else {
-            let what = "this controller keeps no history: `[history]` in its io file names a file for it";
+            let what =
+                say!("this controller keeps no history: `[history]` in its io file names a file for it");
             return Err(Refusal::new(StatusCode::NOT_FOUND, what));
         };
         let reader = Reader::open(path).map_err(unreadable)?;
@@ -92,7 +95,7 @@ async fn read<T: Send + 'static>(
 }
 
 fn unreadable(error: StoreError) -> Refusal {
-    Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, format!("the history cannot be read: {error}"))
+    Refusal::new(StatusCode::INTERNAL_SERVER_ERROR, say!("the history cannot be read: {}", raw(error)))
 }
 
 fn ms(at: i64) -> f64 {
@@ -195,7 +198,7 @@ async fn export(State(shared): State<Shared>, Query(part): Query<Part>) -> Resul
                 give(reader, overview, (&signals, range), &mut file)?;
                 Ok(("application/vnd.apache.parquet", file.end().map_err(too_long)?.0))
             }
-            _ => Err(Refusal::bad("a history is exported as csv or parquet")),
+            _ => Err(Refusal::bad(say!("a history is exported as csv or parquet"))),
         }
     })
     .await?;
@@ -215,7 +218,8 @@ fn give(
 }
 
 fn too_long(_: io::Error) -> Refusal {
-    let what = "this is too long: choose fewer signals or a shorter time, or use `g7 history` on the machine";
+    let what =
+        say!("this is too long: choose fewer signals or a shorter time, or use `g7 history` on the machine");
     Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, what)
 }
 

@@ -11,6 +11,7 @@ use axum::extract::State;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
+use g7_model::say;
 use g7_store::users::Role;
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -59,9 +60,8 @@ pub(super) async fn live(
 ) -> Response {
     let Some(seat) = shared.seats.take(from) else {
         let Limits { clients, from_one, .. } = shared.limits;
-        let text = format!(
-            "all {clients} places are taken, or the {from_one} of this address: close a page somewhere"
-        );
+        let text =
+            say!("all {clients} places are taken, or the {from_one} of this address: close a page somewhere");
         return Refusal::new(StatusCode::TOO_MANY_REQUESTS, text).into_response();
     };
     let most = shared.limits.message;
@@ -179,7 +179,7 @@ async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue
     let who = now(shared, outbox, true).ok_or("the session is over: log in again")?;
     if !matches!(head.r#do.as_str(), "runs" | "watch" | "unwatch") && !head.r#do.starts_with("operator_") {
         // Runs of a simulation touch no machine; they are shared with others all the same.
-        who.needs(Role::Operator)?;
+        who.needs(Role::Operator).map_err(|why| why.to_string())?;
     }
     let runs = &shared.runs;
     let text = match (head.r#do.as_str(), &head.file, head.text) {
@@ -217,13 +217,13 @@ async fn operate(
         serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
     if let Err(why) = who.needs(wish.role()) {
         shared.audit.event("warning", "refused", None, &wish.refused(who));
-        return Err(why);
+        return Err(why.to_string());
     }
     if let Some((kind, data)) = wish.deed() {
         if wish.waits_for_log() {
             let (audit, who) = (shared.audit.clone(), who.clone());
             let row = aside(move || Ok(audit.must(&who, &kind, &data)));
-            row.await.map_err(|refusal| refusal.text)??;
+            row.await.map_err(|refusal| refusal.text.to_string())??;
         } else {
             shared.audit.note(who, &kind, None, &data);
         }

@@ -68,7 +68,7 @@ use tokio::runtime::Runtime;
 
 use crate::attendant::Attendant;
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::tell;
 use crate::operator::{Order, Stage};
 use crate::station::{self, More, Settings, Station};
 use crate::{audit, files, sources};
@@ -152,6 +152,7 @@ fn app(shared: Shared, guard: Guard) -> Router {
         .fallback(get(assets::asset))
         .with_state(shared)
         .layer(axum::middleware::from_fn_with_state(guard, guard::guard))
+        .layer(axum::middleware::from_fn(refusal::translate))
 }
 
 /// Notifies every client of changes in the folder.
@@ -258,16 +259,17 @@ impl Open {
         if let Some(token) = &self.token {
             address = format!("{address}?token={token}");
         }
-        talk!("G7 serves {}{}", shared.title, if args.read_only { ", read-only" } else { "" });
+        let title = raw(&shared.title);
+        tell(if args.read_only { say!("G7 serves {title}, read-only") } else { say!("G7 serves {title}") });
         if self.bound.ip().is_unspecified() {
-            talk!("others put the name or the address of this machine in place of 127.0.0.1");
+            tell(say!("others put the name or the address of this machine in place of 127.0.0.1"));
         }
         if let Some(code) = rules.access.as_ref().and_then(|access| access.code()) {
-            talk!("there is no admin yet: whoever gives this code in the page becomes the first one");
-            talk!("code: {code}");
+            tell(say!("there is no admin yet: whoever gives this code in the page becomes the first one"));
+            tell(say!("code: {}", raw(code)));
         }
         print(&address)?;
-        talk!("Ctrl-C ends it");
+        tell(say!("Ctrl-C ends it"));
         if !args.no_open {
             browser::open(&address);
         }

@@ -17,10 +17,10 @@ use tokio_rustls::rustls::sign::CertifiedKey;
 use tokio_rustls::rustls::{self, ServerConfig};
 use webpki::EndEntityCert;
 
-use g7_model::say;
+use g7_model::{Said, say};
 
 use crate::failure::{Failure, plain, raw};
-use crate::message::talk;
+use crate::message::tell;
 
 const DAY: u64 = 86_400;
 /// A certificate that ends so soon is told, in days.
@@ -60,7 +60,7 @@ impl ResolvesServerCert for Certificate {
 impl Certificate {
     /// Reads a certificate and its key.
     pub(super) fn open(files: Files) -> Result<Arc<Certificate>, Failure> {
-        let right = read(&files, utc_millis() / 1_000).map_err(|why| Failure::Usage(raw(why)))?;
+        let right = read(&files, utc_millis() / 1_000).map_err(Failure::Usage)?;
         warn(&files, &right);
         let seen = Mutex::new(times(&files));
         Ok(Arc::new(Certificate { files, now: Mutex::new(right), seen }))
@@ -93,11 +93,11 @@ impl Certificate {
         drop(seen);
         match read(&self.files, utc_millis() / 1_000) {
             Ok(right) => {
-                talk!("the certificate {} was renewed", self.files.cert.display());
+                tell(say!("the certificate {} was renewed", raw(self.files.cert.display())));
                 warn(&self.files, &right);
                 *self.now.lock().unwrap_or_else(PoisonError::into_inner) = right;
             }
-            Err(why) => talk!("the certificate of before stays: {why}"),
+            Err(why) => tell(say!("the certificate of before stays: {why}")),
         }
     }
 }
@@ -109,48 +109,51 @@ fn times(files: &Files) -> [Option<SystemTime>; 2] {
 fn warn(files: &Files, right: &Right) {
     let left = right.until.saturating_sub(utc_millis() / 1_000) / DAY;
     if left < SOON {
-        talk!("the certificate {} ends in {left} days", files.cert.display());
+        tell(say!("the certificate {} ends in {left} days", raw(files.cert.display())));
     }
 }
 
 /// Reads and judges a certificate; `now` in seconds since 1970.
-fn read(files: &Files, now: u64) -> Result<Right, String> {
+fn read(files: &Files, now: u64) -> Result<Right, Said> {
     let Files { cert, key } = files;
+    let (cert_name, key_name) = (raw(cert.display()), raw(key.display()));
     let chain = certificates(cert)?;
-    let first = chain.first().ok_or_else(|| format!("{} has no certificate (PEM)", cert.display()))?;
+    let first = chain.first().ok_or_else(|| say!("{cert_name} has no certificate (PEM)"))?;
     let bytes = bytes(key)?;
-    let private = PrivateKeyDer::from_pem_slice(&bytes)
-        .map_err(|_| format!("{} has no private key (PEM)", key.display()))?;
-    let unreadable =
-        |e: webpki::Error| format!("{} has a certificate that cannot be read: {e}", cert.display());
+    let private =
+        PrivateKeyDer::from_pem_slice(&bytes).map_err(|_| say!("{key_name} has no private key (PEM)"))?;
+    let unreadable = |e: webpki::Error| say!("{cert_name} has a certificate that cannot be read: {}", raw(e));
     let entity = EndEntityCert::try_from(first).map_err(unreadable)?;
     let (from, until) = validity(&entity).map_err(unreadable)?;
     let names = entity.valid_dns_names().map(str::to_ascii_lowercase).collect();
-    let day = |second: u64| g7_host::utc_day(second);
+    let day = |second: u64| raw(g7_host::utc_day(second));
     if now > until {
-        return Err(format!("the certificate {} has expired on {}: renew it", cert.display(), day(until)));
+        return Err(say!("the certificate {cert_name} has expired on {}: renew it", day(until)));
     }
     if now < from {
-        let what = format!("the certificate {} is valid from {} on", cert.display(), day(from));
-        return Err(format!("{what}, and this machine has {}: wait, or set the clock", day(now)));
+        return Err(say!(
+            "the certificate {cert_name} is valid from {} on, and this machine has {}: wait, or set the clock",
+            day(from),
+            day(now)
+        ));
     }
     let key = CertifiedKey::from_der(chain, private, &ring::default_provider()).map_err(|e| match e {
         rustls::Error::InconsistentKeys(_) => {
-            format!("{} is not the key of the certificate {}", key.display(), cert.display())
+            say!("{key_name} is not the key of the certificate {cert_name}")
         }
-        other => format!("the certificate {} cannot be used: {other}", cert.display()),
+        other => say!("the certificate {cert_name} cannot be used: {}", raw(other)),
     })?;
     Ok(Right { key: Arc::new(key), names, until })
 }
 
-fn bytes(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|e| format!("cannot read {}: {}", path.display(), plain(&e)))
+fn bytes(path: &Path) -> Result<Vec<u8>, Said> {
+    std::fs::read(path).map_err(|e| say!("cannot read {}: {}", raw(path.display()), plain(&e)))
 }
 
-fn certificates(path: &Path) -> Result<Vec<CertificateDer<'static>>, String> {
+fn certificates(path: &Path) -> Result<Vec<CertificateDer<'static>>, Said> {
     let bytes = bytes(path)?;
     let all: Result<Vec<_>, _> = CertificateDer::pem_slice_iter(&bytes).collect();
-    all.map_err(|e| format!("{} is no certificate (PEM): {e}", path.display()))
+    all.map_err(|e| say!("{} is no certificate (PEM): {}", raw(path.display()), raw(e)))
 }
 
 /// The first and the last second at which a certificate is valid. It is asked for at the ends of time, and the

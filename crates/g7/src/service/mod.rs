@@ -17,9 +17,9 @@ use g7_online::setup::Kind;
 use g7_model::say;
 
 use crate::failure::{Failure, Verdict, plain, raw};
-use crate::message::talk;
+use crate::message::{done, note, tell};
 use crate::wiring::{self, Plan, Wanted};
-use crate::{files, sources, style};
+use crate::{files, sources};
 
 use unit::{Runs, Unit};
 
@@ -109,7 +109,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
         Some(name) => name.clone(),
         None => format!("g7-{}", called(&path)),
     };
-    unit::check_name(&name).map_err(|why| Failure::Usage(raw(why)))?;
+    unit::check_name(&name).map_err(Failure::Usage)?;
     let binary = std::env::current_exe().map_err(|e| Failure::Read(PathBuf::from("g7"), e))?;
     let unit = Unit {
         binary: &binary,
@@ -126,7 +126,7 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
             || plan.setup.server.port.as_ref().is_some_and(|port| (1..1024).contains(&port.value)),
         realtime: plan.setup.controller.priority.is_some(),
     };
-    let text = unit.text().map_err(|why| Failure::Usage(raw(why)))?;
+    let text = unit.text().map_err(Failure::Usage)?;
     if args.print {
         files::deliver(None, text.as_bytes())?;
         return Ok(Verdict::Fine);
@@ -137,12 +137,12 @@ fn install(args: &Install) -> Result<Verdict, Failure> {
     files::deliver(Some(&file), text.as_bytes())?;
     systemctl(args.user, &["daemon-reload"])?;
     let user = if args.user { "--user " } else { "" };
-    talk!("start it with `systemctl {user}enable --now {name}`");
+    tell(say!("start it with `systemctl {user}enable --now {name}`"));
     Ok(Verdict::Fine)
 }
 
 fn remove(args: &Remove) -> Result<Verdict, Failure> {
-    unit::check_name(&args.name).map_err(|why| Failure::Usage(raw(why)))?;
+    unit::check_name(&args.name).map_err(Failure::Usage)?;
     let file = folder(args.user)?.join(format!("{}.service", args.name));
     let text = std::fs::read(&file).map_err(|e| Failure::Read(file.clone(), e))?;
     if !unit::is_ours(&text) {
@@ -151,7 +151,7 @@ fn remove(args: &Remove) -> Result<Verdict, Failure> {
     systemctl(args.user, &["disable", "--now", &args.name])?;
     std::fs::remove_file(&file).map_err(|e| Failure::Write(file.clone(), e))?;
     systemctl(args.user, &["daemon-reload"])?;
-    talk!("{}removed{:#} {}", style::GOOD, style::GOOD, file.display());
+    done(&say!("removed"), file.display());
     Ok(Verdict::Fine)
 }
 
@@ -179,12 +179,9 @@ fn owner(args: &Install, path: &Path) -> Result<Option<String>, Failure> {
     }
     let uid = std::fs::metadata(path).map_err(|e| Failure::Read(path.to_path_buf(), e))?.uid();
     if uid == 0 {
-        talk!(
-            "{}note:{:#} the chart belongs to root, and so the service would have all rights; \
-             --run-as names another user",
-            style::WARN,
-            style::WARN
-        );
+        note(say!(
+            "the chart belongs to root, and so the service would have all rights; --run-as names another user"
+        ));
     }
     Ok(Some(uid.to_string()))
 }

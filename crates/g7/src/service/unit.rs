@@ -5,6 +5,8 @@
 
 use std::path::Path;
 
+use g7_model::{Said, say};
+
 /// The first line of our units, by which they are known.
 const OURS: &str = "# Written by `g7 service install`.";
 
@@ -45,7 +47,7 @@ impl Unit<'_> {
     /// # Errors
     ///
     /// A sentence, where a path cannot stand in a unit.
-    pub(super) fn text(&self) -> Result<String, String> {
+    pub(super) fn text(&self) -> Result<String, Said> {
         let command = match self.runs {
             Runs::Run => "run --online",
             Runs::Serve => "serve --online --no-open",
@@ -81,7 +83,7 @@ impl Unit<'_> {
     }
 
     /// The lines that bound the rights of the service.
-    fn bounds(&self) -> Result<String, String> {
+    fn bounds(&self) -> Result<String, Said> {
         let mut lines = vec![
             "NoNewPrivileges=yes",
             "ProtectSystem=strict",
@@ -120,10 +122,10 @@ pub(super) fn is_ours(text: &[u8]) -> bool {
 }
 
 /// Refuses what is no name of a unit (systemd.unit(5)) or would be an instance or a path.
-pub(super) fn check_name(name: &str) -> Result<(), String> {
+pub(super) fn check_name(name: &str) -> Result<(), Said> {
     let fits = |c: char| c.is_ascii_alphanumeric() || "-_.".contains(c);
     if name.is_empty() || name.len() > 200 || !name.chars().all(fits) || name.starts_with(['-', '.']) {
-        return Err(format!(
+        return Err(say!(
             "`{name}` is no name of a service: letters without accents, digits, `-`, `_` and `.` \
              (--name gives another one)"
         ));
@@ -132,9 +134,9 @@ pub(super) fn check_name(name: &str) -> Result<(), String> {
 }
 
 /// A path as an argument (systemd.service(5), "Command lines"; systemd.unit(5), "Specifiers").
-fn quoted(path: &Path) -> Result<String, String> {
+fn quoted(path: &Path) -> Result<String, Said> {
     let Some(text) = path.to_str().filter(|text| !text.contains(['\n', '\r'])) else {
-        return Err(format!("{} cannot stand in a unit: rename it", path.display()));
+        return Err(say!("`{}` cannot stand in a unit: rename it", path.display()));
     };
     let mut out = String::from("\"");
     for c in text.chars() {

@@ -5,18 +5,23 @@ use std::io::{self, Write};
 use g7_model::{Nanos, say};
 use serde_json::{Value, json};
 
+use crate::failure::raw;
+use crate::message::told;
 use crate::tongue::language;
 use crate::{report, style};
-use g7_rig::testing::{Coverage, Defect, Outcome, Unproved};
+use g7_rig::testing::{Coverage, Outcome, Unproved};
 
 /// Prints one line for each test.
 pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
     for o in outcomes {
-        let (style, word) = if o.defect.is_some() { (style::BAD, "FAILED") } else { (style::GOOD, "ok") };
+        let (style, word) = match o.defect {
+            Some(_) => (style::BAD, told(&say!("FAILED"))),
+            None => (style::GOOD, told(&say!("ok"))),
+        };
         let (faint, time) = (style::FAINT, o.simulated.plain());
         writeln!(out, "{style}{word:>6}{style:#} {}: {} {faint}({time}){faint:#}", o.file, o.title)?;
         for note in &o.notes {
-            writeln!(out, "{}  note{:#} {note}", style::WARN, style::WARN)?;
+            writeln!(out, "{}  {}{:#} {}", style::WARN, told(&say!("note")), style::WARN, told(note))?;
         }
     }
     Ok(())
@@ -26,16 +31,17 @@ pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::R
 pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
     for o in outcomes {
         let Some(d) = &o.defect else { continue };
-        writeln!(out, "\n{}{}{:#}: {}", style::BAD, o.title, style::BAD, sentence(d))?;
-        writeln!(out, "  at {}, {} after the start", d.place, d.time.plain())?;
+        writeln!(out, "\n{}{}{:#}: {}", style::BAD, o.title, style::BAD, told(&d.sentence()))?;
+        let place = say!("at {}, {} after the start", raw(&d.place), raw(d.time.plain()));
+        writeln!(out, "  {}", told(&place))?;
         if let Some(origin) = &d.origin {
-            writeln!(out, "  it came up at {origin}")?;
+            writeln!(out, "  {}", told(&say!("it came up at {}", raw(origin))))?;
         }
         if !d.got.is_empty() {
             let got: Vec<String> = d.got.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            writeln!(out, "  got {}", got.join(", "))?;
+            writeln!(out, "  {}", told(&say!("got {}", raw(got.join(", ")))))?;
         }
-        writeln!(out, "  situation {}", d.situation)?;
+        writeln!(out, "  {}", told(&say!("situation {}", raw(&d.situation))))?;
         if !d.chronogram.is_empty() {
             writeln!(out)?;
             for line in d.chronogram.lines() {
@@ -44,10 +50,6 @@ pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<
         }
     }
     Ok(())
-}
-
-fn sentence(d: &Defect) -> String {
-    if d.expected.is_empty() { d.what.clone() } else { format!("{}: {}", d.what, d.expected) }
 }
 
 /// All that came of the files.
@@ -91,15 +93,13 @@ pub(super) fn coverage(out: &mut dyn Write, files: &[(String, Coverage)]) -> io:
         for (sort, rows) in coverage.sorts() {
             let reached = rows.values().filter(|r| r.hits > 0).count();
             let style = if reached == rows.len() { style::GOOD } else { style::WARN };
-            writeln!(out, "  {style}{reached:>5} of {:<5}{style:#} {sort}", rows.len())?;
+            let of = told(&say!("of"));
+            writeln!(out, "  {style}{reached:>5} {of} {:<5}{style:#} {}", rows.len(), told(&sort.plural()))?;
         }
         for (sort, rows) in coverage.sorts() {
             for row in rows.values().filter(|r| r.hits == 0) {
-                let one = match sort {
-                    "branches" => "branch",
-                    other => other.trim_end_matches('s'),
-                };
-                writeln!(out, "  not reached: {one} {} ({})", row.name, row.place)?;
+                let row = say!("not reached: {} {} ({})", sort.one(), raw(&row.name), raw(&row.place));
+                writeln!(out, "  {}", told(&row))?;
             }
         }
     }
@@ -126,12 +126,12 @@ fn test_json(o: &Outcome) -> Value {
     let mut test = json!({
         "file": o.file, "title": o.title, "place": o.place, "passed": o.defect.is_none(),
         "simulated_seconds": o.simulated.as_seconds(), "scans": o.scans, "seconds": o.took.as_seconds(),
-        "notes": o.notes,
+        "notes": o.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
     });
     if let Some(d) = &o.defect {
         let got: serde_json::Map<String, Value> = d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
         test["failure"] = json!({
-            "what": d.what, "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
+            "what": d.what.as_str(), "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
             "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
         });
     }
@@ -143,7 +143,7 @@ fn coverage_json(file: &str, coverage: &Coverage) -> Value {
     for (sort, rows) in coverage.sorts() {
         let list: Vec<Value> =
             rows.values().map(|r| json!({ "name": r.name, "place": r.place, "hits": r.hits })).collect();
-        all[sort] = json!({
+        all[sort.key()] = json!({
             "total": rows.len(), "reached": rows.values().filter(|r| r.hits > 0).count(), "rows": list,
         });
     }
@@ -208,7 +208,7 @@ fn case(out: &mut String, o: &Outcome) {
             let text = anstream::adapter::strip_str(&String::from_utf8_lossy(&text)).to_string();
             out.push_str(&format!(
                 ">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
-                escape(&sentence(d)),
+                escape(&d.sentence()),
                 escape(text.trim())
             ));
         }

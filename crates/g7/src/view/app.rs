@@ -4,6 +4,7 @@ use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock};
 
 use crate::cli::Run;
 use crate::failure::{Failure, raw};
+use crate::message::told;
 use crate::values::{self, Assign};
 use g7_model::{Nanos, say};
 use g7_rig::{Bench, Conflicts, Item, Role, Table};
@@ -96,10 +97,10 @@ impl<'b> App<'b> {
         script.sort_by_key(|a| std::cmp::Reverse(a.at));
         for assign in &script {
             let Some(item) = bench.item(&assign.name) else {
-                return Err(Failure::Usage(say!("--set: {}", raw(bench.unknown(&assign.name)))));
+                return Err(Failure::Usage(say!("--set: {}", bench.unknown(&assign.name))));
             };
             values::read(&assign.value, item.kind)
-                .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name), e = raw(&e))))?;
+                .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name))))?;
         }
         Ok(App {
             bench,
@@ -175,10 +176,10 @@ impl<'b> App<'b> {
         let now = Nanos::new(self.runner.shown().now());
         self.recording.sample(now, self.bench.sample(&self.runner));
         if let Some(conflict) = self.conflicts.of(self.bench, &self.runner) {
-            self.message = conflict;
+            self.message = told(&conflict);
         }
         if let Err(halt) = done {
-            self.message = format!("fault: {}; R restarts", self.bench.halt(&self.runner, halt));
+            self.message = told(&say!("fault: {}; R restarts", self.bench.halt(&self.runner, halt)));
         }
     }
 
@@ -348,7 +349,7 @@ impl<'b> App<'b> {
         match values::read(&edit.text, item.kind) {
             Ok(value) => self.put(item, &value),
             Err(why) => {
-                edit.why = why;
+                edit.why = told(&why);
                 self.edit = Some(edit);
             }
         }

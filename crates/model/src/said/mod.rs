@@ -25,23 +25,31 @@ struct Made {
     /// In English.
     text: Cow<'static, str>,
     parts: Vec<Part>,
+    /// In French and Portuguese, where a table elsewhere has the words.
+    told: Option<[String; 2]>,
 }
 
 impl Said {
     /// A text without holes. `say!` calls this.
     pub fn plain(template: &'static str, text: &'static str) -> Said {
-        Said(Box::new(Made { template, text: Cow::Borrowed(text), parts: Vec::new() }))
+        Said(Box::new(Made { template, text: Cow::Borrowed(text), ..Made::default() }))
     }
 
     /// A text with its holes filled in their order. `say!` calls this.
     pub fn filled(template: &'static str, parts: Vec<Part>) -> Said {
         let text = table::fill(template, template, &shown(&parts, Language::English));
-        Said(Box::new(Made { template, text: Cow::Owned(text), parts }))
+        Said(Box::new(Made { template, text: Cow::Owned(text), parts, told: None }))
     }
 
     /// The text of another program, of a file or of a user: the same in each language.
     pub fn foreign(text: impl Into<String>) -> Said {
         Said(Box::new(Made { text: Cow::Owned(text.into()), ..Made::default() }))
+    }
+
+    /// A text of which the words are known in each language, in the order of [`Language::ALL`].
+    pub fn in_each([english, french, portuguese]: [String; 3]) -> Said {
+        let told = Some([french, portuguese]);
+        Said(Box::new(Made { text: Cow::Owned(english), told, ..Made::default() }))
     }
 
     /// In English.
@@ -51,6 +59,11 @@ impl Said {
 
     /// In a language.
     pub fn in_language(&self, language: Language) -> String {
+        match (&self.0.told, language) {
+            (Some([french, _]), Language::French) => return french.clone(),
+            (Some([_, portuguese]), Language::Portuguese) => return portuguese.clone(),
+            _ => {}
+        }
         if language == Language::English || self.0.template.is_empty() {
             return self.0.text.clone().into_owned();
         }
@@ -73,6 +86,8 @@ impl std::fmt::Display for Said {
         f.pad(&self.0.text)
     }
 }
+
+impl std::error::Error for Said {}
 
 /// The content of a hole.
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -6,6 +6,7 @@
 
 use std::fmt;
 
+use g7_model::{Said, say};
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 /// A change of an io file.
@@ -36,7 +37,7 @@ pub enum Plain {
 
 /// Why a file cannot be changed so.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Uneditable(pub String);
+pub struct Uneditable(pub Said);
 
 impl fmt::Display for Uneditable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -73,7 +74,7 @@ pub fn edit(text: &str, changes: &[Change]) -> Result<String, Uneditable> {
 fn parsed(text: &str) -> Result<DocumentMut, Uneditable> {
     text.parse::<DocumentMut>().map_err(|e| {
         let line = e.span().and_then(|at| text.get(..at.start)).map_or(1, |above| above.split('\n').count());
-        Uneditable(format!("line {line} of the io file is no TOML: mend it in a text editor first"))
+        Uneditable(say!("line {line} of the io file is no TOML: mend it in a text editor first"))
     })
 }
 
@@ -130,7 +131,7 @@ fn allowed(path: &[String]) -> Result<(&String, &[String]), Uneditable> {
         {
             Ok((key, above))
         }
-        Some(_) | None => Err(Uneditable(format!("an io file has nothing at `{}`", path.join(".")))),
+        Some(_) | None => Err(Uneditable(say!("an io file has nothing at `{}`", path.join(".")))),
     }
 }
 
@@ -155,7 +156,7 @@ fn tables<'d>(document: &'d mut DocumentMut, path: &[String]) -> Result<&'d mut 
 }
 
 fn no_table(key: &str) -> Uneditable {
-    Uneditable(format!("`{key}` is no table: mend it in a text editor first"))
+    Uneditable(say!("`{key}` is no table: mend it in a text editor first"))
 }
 
 fn new_table() -> Table {
@@ -184,7 +185,7 @@ fn device(document: &mut DocumentMut, name: &str, rows: &[(String, Plain)]) -> R
     let devices =
         document.get_mut("devices").and_then(Item::as_table_like_mut).ok_or_else(|| no_table("devices"))?;
     if devices.get(name).is_some() {
-        return Err(Uneditable(format!("there is a device `{name}` already")));
+        return Err(Uneditable(say!("there is a device `{name}` already")));
     }
     let mut table = new_table();
     for (key, value) in rows {
@@ -209,9 +210,9 @@ fn rename(document: &mut DocumentMut, from: &str, to: &str) -> Result<(), Unedit
     let devices =
         document.get_mut("devices").and_then(Item::as_table_like_mut).ok_or_else(|| no_table("devices"))?;
     if devices.get(to).is_some() {
-        return Err(Uneditable(format!("there is a device `{to}` already")));
+        return Err(Uneditable(say!("there is a device `{to}` already")));
     }
-    let item = devices.remove(from).ok_or_else(|| Uneditable(format!("there is no device `{from}`")))?;
+    let item = devices.remove(from).ok_or_else(|| Uneditable(say!("there is no device `{from}`")))?;
     devices.insert(to, item);
     Ok(())
 }

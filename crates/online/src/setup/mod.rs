@@ -25,6 +25,7 @@ mod device;
 mod edit;
 mod field;
 mod history;
+mod no_toml;
 mod opcua;
 mod outline;
 mod panel;
@@ -184,7 +185,7 @@ pub fn read(text: &str, file: FileId) -> (Setup, Vec<Problem>) {
     let (table, errors) = DeTable::parse_recoverable(text);
     for error in errors {
         let at = found.span(error.span().unwrap_or(0..0));
-        found.wrong(at, Said::foreign(error.message()));
+        found.wrong(at, no_toml::no_toml(error.message()));
     }
     let setup = setup(table.get_ref(), &mut found);
     (setup, found.problems)

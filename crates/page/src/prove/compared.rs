@@ -70,7 +70,7 @@ pub(crate) struct Compared {
 }
 
 /// Compares two files within the limits.
-pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, String> {
+pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, g7_model::Said> {
     let mut sides = Vec::new();
     for (side, (file, name)) in files.into_iter().zip(&wish.profiles).enumerate() {
         let profile: Option<ProfileName> = name.as_deref().map(profile).transpose()?;
@@ -82,7 +82,7 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, Strin
             _ => return Ok(Compared { is: Outcome::Errors, side: Some(side), ..Compared::default() }),
         }
     }
-    let [a, b] = sides.as_slice() else { return Err("two files are compared".to_owned()) };
+    let [a, b] = sides.as_slice() else { return Err(g7_model::say!("two files are compared")) };
     let budget = Budget {
         states: wish.limits.states.min(MOST.states),
         scans: usize::MAX,

@@ -5,7 +5,7 @@ use g7_engine::{State, scan};
 use g7_host::VirtualClock;
 use g7_ide::File;
 use g7_ide::ids;
-use g7_model::{Document, Item};
+use g7_model::{Document, Item, Said, say};
 use g7_rig::testing::{self, Coverage};
 use g7_rig::{Bench, Source};
 use g7_verify::{Claim, Model, Move, Question, Run, words};
@@ -57,9 +57,9 @@ struct Added {
 }
 
 /// The ways on from a claim that a run refutes.
-pub(crate) fn ways(file: &File, wish: &Wish) -> Result<Ways, String> {
+pub(crate) fn ways(file: &File, wish: &Wish) -> Result<Ways, Said> {
     let asked = questions(file).filter(|_| hash(file.text()) == wish.hash);
-    let asked = asked.ok_or("the text has changed since: ask again")?;
+    let asked = asked.ok_or_else(|| say!("the text has changed since; ask again"))?;
     if let Some(question) = asked.questions.get(wish.question) {
         let model = Model::new(&asked.compiled, asked.assume.clone());
         let options = g7_rig::Options { plant: Some("none"), ..g7_rig::Options::default() };
@@ -74,7 +74,7 @@ pub(crate) fn ways(file: &File, wish: &Wish) -> Result<Ways, String> {
         }
         number -= closed.questions.len();
     }
-    Err("there is no such question".to_owned())
+    Err(say!("there is no such question"))
 }
 
 fn found(

@@ -79,7 +79,7 @@ fn halted(run: &Run) -> Option<Halted> {
     let at = run.bench.halt_place(halt);
     let unit = |byte: u32| run.positions.unit(&run.text, byte as usize);
     Some(Halted {
-        what: run.bench.halt(run.watched(), halt),
+        what: run.bench.halt(run.watched(), halt).in_language(run.language),
         ids: at.and_then(|at| ids::at(&run.document, at)).map(|t| t.id()).into_iter().collect(),
         from: at.map(|at| unit(at.start)),
         to: at.map(|at| unit(at.end)),
@@ -136,7 +136,7 @@ fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
         stopped: run.stopped.take().map(|id| Stopped { id }),
         halt: halted(run),
         live: run.viewed.is_none(),
-        notes: std::mem::take(&mut run.notes),
+        notes: std::mem::take(&mut run.notes).iter().map(|n| n.in_language(run.language)).collect(),
     };
     run.sent = Sent { active, enabled, values, forced, view };
     frame

@@ -1,7 +1,7 @@
 //! The recorded signals: edges for a chronogram, and export to files.
 
 use g7_host::{Kind, Recording, write_csv, write_vcd};
-use g7_model::Nanos;
+use g7_model::{Nanos, Said};
 use serde::Serialize;
 
 use super::running::Run;
@@ -49,7 +49,7 @@ impl Run {
         form: Form,
         from: Option<f64>,
         to: Option<f64>,
-    ) -> Result<String, String> {
+    ) -> Result<String, Said> {
         let all: Vec<usize> = (0..self.recording.signals().len()).collect();
         let signals = if signals.is_empty() { &all } else { signals };
         let from = from.map_or(self.recording.start(), time);
@@ -61,8 +61,8 @@ impl Run {
             Form::Vcd => write_vcd(&part, &mut out),
             Form::Svg => return Ok(picture(&part)),
         };
-        done.map_err(|e| e.to_string())?;
-        String::from_utf8(out).map_err(|e| e.to_string())
+        done.map_err(|e| Said::foreign(e.to_string()))?;
+        String::from_utf8(out).map_err(|e| Said::foreign(e.to_string()))
     }
 }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 use g7_engine::StepId;
 use g7_host::{Kind, Recording, Runner, Start as Restart, Value};
 use g7_ide::Positions;
-use g7_model::{Document, Nanos};
+use g7_model::{Document, Language, Nanos, Said, say};
 use g7_rig::{Activity, Bench, Conflicts, Item, Role, values};
 
 use super::past::{self, Event, Past};
@@ -55,7 +55,9 @@ pub(crate) struct Run {
     pub(super) now: Nanos,
     pub(super) recording: Recording,
     pub(super) conflicts: Conflicts,
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<Said>,
+    /// The language of its reader.
+    pub(crate) language: Language,
     /// The numbers of the transitions cleared since the previous frame.
     pub(super) cleared: BTreeSet<u32>,
     /// The breakpoints.
@@ -82,12 +84,12 @@ pub(super) struct Breaks {
 }
 
 impl Run {
-    fn item(&self, signal: usize) -> Result<&Item, String> {
-        self.bench.items.get(signal).ok_or_else(|| "there is no such signal".to_owned())
+    fn item(&self, signal: usize) -> Result<&Item, Said> {
+        self.bench.items.get(signal).ok_or_else(|| say!("there is no such signal"))
     }
 
     /// Advances the virtual time, scan by scan, until a breakpoint is met.
-    pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) -> Result<(), String> {
+    pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) -> Result<(), Said> {
         self.only_now()?;
         self.clock = self.clock.max(self.now) + times::time(ms).max(Nanos::ZERO);
         self.late = false;
@@ -108,7 +110,7 @@ impl Run {
     }
 
     /// Makes a single scan.
-    pub(crate) fn one_scan(&mut self) -> Result<(), String> {
+    pub(crate) fn one_scan(&mut self) -> Result<(), Said> {
         self.only_now()?;
         self.scan();
         self.clock = self.now;
@@ -116,9 +118,9 @@ impl Run {
     }
 
     /// Refuses changes while the user looks at an earlier scan.
-    pub(super) fn only_now(&self) -> Result<(), String> {
+    pub(super) fn only_now(&self) -> Result<(), Said> {
         match self.viewed {
-            Some(_) => Err("this is the past: come back to now, or go on from here".to_owned()),
+            Some(_) => Err(say!("this is the past: come back to now, or go on from here")),
             None => Ok(()),
         }
     }
@@ -141,7 +143,7 @@ impl Run {
     }
 
     /// Makes one pass of the next scan.
-    pub(crate) fn pass(&mut self) -> Result<(), String> {
+    pub(crate) fn pass(&mut self) -> Result<(), Said> {
         self.only_now()?;
         if self.runner.halt().is_some() {
             return Ok(());
@@ -211,17 +213,17 @@ impl Run {
     }
 
     /// Sets an input, a variable or a state of the plant once.
-    pub(crate) fn set(&mut self, signal: usize, value: &str) -> Result<(), String> {
+    pub(crate) fn set(&mut self, signal: usize, value: &str) -> Result<(), Said> {
         let item = self.settable(signal)?;
         let value = values::read(value, item.kind)?;
         self.put(signal, &value)
     }
 
     /// Inverts a BOOL.
-    pub(crate) fn toggle(&mut self, signal: usize) -> Result<(), String> {
+    pub(crate) fn toggle(&mut self, signal: usize) -> Result<(), Said> {
         let item = self.settable(signal)?;
         if item.kind != Kind::Bool {
-            return Err(format!("`{}` is not a BOOL, so it cannot be inverted", item.name));
+            return Err(say!("`{}` is not a BOOL, so it cannot be inverted", item.name));
         }
         let now = match item.role {
             Role::Input(index) => self.runner.input(index),
@@ -230,18 +232,18 @@ impl Run {
         self.put(signal, &Value::Word(u64::from(now == 0)))
     }
 
-    fn settable(&self, signal: usize) -> Result<&Item, String> {
+    fn settable(&self, signal: usize) -> Result<&Item, Said> {
         let item = self.item(signal)?;
         match item.role {
-            Role::Output => Err(format!("`{}` is an output: the chart sets it; it can be forced", item.name)),
+            Role::Output => Err(say!("`{}` is an output: the chart sets it; it can be forced", item.name)),
             Role::Input(_) if self.bench.is_driven(&self.runner, item) => {
-                Err(format!("`{}` is driven by the plant; it can be forced", item.name))
+                Err(say!("`{}` is driven by the plant; it can be forced", item.name))
             }
             Role::Input(_) | Role::Variable | Role::Plant => Ok(item),
         }
     }
 
-    fn put(&mut self, signal: usize, value: &Value) -> Result<(), String> {
+    fn put(&mut self, signal: usize, value: &Value) -> Result<(), Said> {
         self.only_now()?;
         self.come(Event::Set(signal, value.clone()));
         Ok(())
@@ -254,11 +256,11 @@ impl Run {
     }
 
     /// Forces a signal to a value.
-    pub(crate) fn force(&mut self, signal: usize, value: &str) -> Result<(), String> {
+    pub(crate) fn force(&mut self, signal: usize, value: &str) -> Result<(), Said> {
         self.only_now()?;
         let item = self.item(signal)?;
         if item.role == Role::Plant {
-            return Err(format!("`{}` is a state of the plant: it can be set, not forced", item.name));
+            return Err(say!("`{}` is a state of the plant: it can be set, not forced", item.name));
         }
         let value = values::read(value, item.kind)?;
         self.come(Event::Force(signal, value));
@@ -266,7 +268,7 @@ impl Run {
     }
 
     /// Releases a signal.
-    pub(crate) fn release(&mut self, signal: usize) -> Result<(), String> {
+    pub(crate) fn release(&mut self, signal: usize) -> Result<(), Said> {
         self.only_now()?;
         self.item(signal)?;
         self.come(Event::Release(signal));
@@ -274,7 +276,7 @@ impl Run {
     }
 
     /// Releases all signals.
-    pub(crate) fn release_all(&mut self) -> Result<(), String> {
+    pub(crate) fn release_all(&mut self) -> Result<(), Said> {
         self.only_now()?;
         let held =
             |i: &usize| self.bench.items.get(*i).is_some_and(|it| self.bench.is_forced(&self.runner, it));
@@ -284,7 +286,7 @@ impl Run {
     }
 
     /// Restarts the charts and makes the first scan.
-    pub(crate) fn restart(&mut self, warm: bool) -> Result<(), String> {
+    pub(crate) fn restart(&mut self, warm: bool) -> Result<(), Said> {
         self.only_now()?;
         if self.runner.is_within_scan() {
             self.scan();
@@ -298,10 +300,10 @@ impl Run {
     }
 
     /// Shows the run as it was at an instant.
-    pub(crate) fn seek(&mut self, ms: f64) -> Result<(), String> {
+    pub(crate) fn seek(&mut self, ms: f64) -> Result<(), Said> {
         let instant = times::time(ms).max(self.past.begin());
         let found = self.past.at(&self.bench, instant);
-        let (runner, scans) = found.ok_or("nothing was recorded yet")?;
+        let (runner, scans) = found.ok_or_else(|| say!("nothing was recorded yet"))?;
         let back = i64::try_from(scans).unwrap_or(1).saturating_sub(1);
         let now = self.past.begin() + runner.period() * back;
         let last = self.past.is_last(scans);

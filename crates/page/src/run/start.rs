@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use g7_host::Kind;
 use g7_ide::Positions;
-use g7_model::Nanos;
+use g7_model::{Language, Nanos, Said};
 use g7_rig::{Activity, Conflicts, Role, Source};
 use serde::Serialize;
 
@@ -109,7 +109,7 @@ struct Binding {
 }
 
 /// Compiles a source and makes the first scan, or those of the run that the page wishes to see.
-pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
+pub(crate) fn start(source: &Source, wish: &Start, language: Language) -> Result<Run, Said> {
     let bench = bench(source, wish)?;
     let runner = bench.runner(wish.seed);
     let mut run = Run {
@@ -129,6 +129,7 @@ pub(crate) fn start(source: &Source, wish: &Start) -> Result<Run, String> {
         now: Nanos::ZERO,
         conflicts: Conflicts::default(),
         notes: Vec::new(),
+        language,
         cleared: Default::default(),
         breaks: Breaks::default(),
         stopped: None,

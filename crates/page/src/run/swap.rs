@@ -3,6 +3,7 @@
 use std::sync::Arc;
 
 use g7_ide::Positions;
+use g7_model::Said;
 use g7_rig::Source;
 use serde::Serialize;
 
@@ -26,7 +27,7 @@ pub(crate) enum Swapped {
 impl Run {
     /// Continues the run with a changed text after the present scan. Returns what would be lost; if
     /// anything would be, the change is made only if it is `forced`.
-    pub(crate) fn swap(&mut self, source: &Source, forced: bool) -> Result<Vec<String>, String> {
+    pub(crate) fn swap(&mut self, source: &Source, forced: bool) -> Result<Vec<Said>, Said> {
         self.only_now()?;
         let new = bench(source, &self.wish)?;
         let document = Arc::new(source.document.clone());

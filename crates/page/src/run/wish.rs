@@ -2,7 +2,7 @@
 //!
 //! A run keeps the request, so that an on-line change builds the new bench in the same way.
 
-use g7_model::{Nanos, ProfileName, Severity};
+use g7_model::{Nanos, ProfileName, Said, Severity, say};
 use g7_rig::{Bench, Options, Source};
 use serde::Deserialize;
 
@@ -32,11 +32,11 @@ impl Start {
 }
 
 /// Builds the bench for a request.
-pub(super) fn bench(source: &Source, wish: &Start) -> Result<Bench, String> {
+pub(super) fn bench(source: &Source, wish: &Start) -> Result<Bench, Said> {
     let profile = wish.profile.as_deref().map(profile).transpose()?;
     let scan = match wish.scan_ms {
         Some(ms) if !(0.001..=3.6e6).contains(&ms) => {
-            return Err("the scan time must lie between 1 us and 1 h".to_owned());
+            return Err(say!("the scan time must lie between 1 us and 1 h"));
         }
         ms => ms.map(|ms| Nanos::new((ms * 1e6) as i64)),
     };
@@ -44,20 +44,19 @@ pub(super) fn bench(source: &Source, wish: &Start) -> Result<Bench, String> {
     let first = g7_compile::plant::plants(&source.document).next().map(|p| p.name.text.to_string());
     let plant = wish.plant.as_deref().or(first.as_deref());
     let (bench, problems) =
-        g7_rig::build(source, &Options { profile, scan, plant, asks: &[] }).map_err(|e| e.to_string())?;
+        g7_rig::build(source, &Options { profile, scan, plant, asks: &[] }).map_err(|e| e.said())?;
     bench.ok_or_else(|| {
         let mut errors = problems.iter().filter(|p| p.severity() == Severity::Error);
-        let first = errors.next().map_or(String::new(), |p| format!(": {}", p.what));
-        let more = match errors.count() {
-            0 => String::new(),
-            n => format!(" (and {n} more)"),
-        };
-        format!("this cannot be run yet{first}{more}")
+        match (errors.next(), errors.count()) {
+            (None, _) => say!("this cannot be run yet"),
+            (Some(first), 0) => say!("this cannot be run yet: {}", first.what),
+            (Some(first), more) => say!("this cannot be run yet: {} (and {more} more)", first.what),
+        }
     })
 }
 
 /// The profile with this name.
-pub(crate) fn profile(name: &str) -> Result<ProfileName, String> {
+pub(crate) fn profile(name: &str) -> Result<ProfileName, Said> {
     let found = ProfileName::ALL.into_iter().find(|p| p.name() == name);
-    found.ok_or_else(|| format!("there is no profile `{name}`"))
+    found.ok_or_else(|| say!("there is no profile `{name}`"))
 }

@@ -9,10 +9,11 @@ use std::ops::Range;
 
 use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
-use g7_engine::{Addr, GroupId, State, StepId};
+use g7_engine::{Addr, FaultKind, GroupId, State, StepId};
 use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Sample, Signal, Value, read_text, write_text};
 use g7_model::{Nanos, Said, Span, Type, say};
 
+use crate::fault;
 pub use ask::{Answer, Ask, Options};
 pub use tables::Table;
 
@@ -204,20 +205,13 @@ impl Bench {
     }
 
     /// A sentence that refuses an unknown name.
-    pub fn unknown(&self, name: &str) -> String {
-        if !name.starts_with('%') {
-            return format!("there is no `{name}`{}", self.suggestions(name));
-        }
-        let (what, help) = self.no_item(name);
-        if help.is_empty() { what.to_string() } else { format!("{what}; {help}") }
-    }
-
-    /// Suggests names similar to an unknown name, for a message.
-    pub fn suggestions(&self, name: &str) -> String {
-        match self.near(name) {
-            none if none.is_empty() => String::new(),
-            near => format!("; {near}"),
-        }
+    pub fn unknown(&self, name: &str) -> Said {
+        let (what, help) = if name.starts_with('%') {
+            self.no_item(name)
+        } else {
+            (say!("there is no `{name}`"), self.near(name))
+        };
+        if help.is_empty() { what } else { say!("{what}; {help}") }
     }
 
     /// Asks whether one of the names was meant that come near; empty where there are none.
@@ -398,22 +392,23 @@ impl Bench {
     }
 
     /// A sentence that says why the run stopped.
-    pub fn halt(&self, runner: &Runner, halt: Halt) -> String {
-        let (who, fault) = match halt {
-            Halt::Charts(fault) => ("", fault),
-            Halt::Plant(fault) => ("the plant: ", fault),
+    pub fn halt(&self, runner: &Runner, halt: Halt) -> Said {
+        let kind = match halt {
+            Halt::Charts(stopped) => stopped.kind,
+            Halt::Plant(stopped) => return say!("the plant: {}", fault(stopped.kind)),
         };
-        let mut text = format!("{who}{}", fault.kind);
-        if let (Halt::Charts(_), g7_engine::FaultKind::Forcing { chart }) = (halt, fault.kind)
-            && let Some(chart) = self.compiled.symbols.charts.get(chart as usize)
-        {
-            text.push_str(&format!(" (chart {})", chart.name));
+        match kind {
+            FaultKind::Forcing { chart } => match self.compiled.symbols.charts.get(chart as usize) {
+                Some(chart) => say!("{} (chart `{}`)", fault(kind), chart.name),
+                None => fault(kind),
+            },
+            FaultKind::Unstable { cycle } => {
+                let cycle: Vec<String> =
+                    self.cycle(runner, cycle).iter().map(|s| format!("{{{s}}}")).collect();
+                say!("{}: {}", fault(kind), Said::foreign(cycle.join(" -> ")))
+            }
+            _ => fault(kind),
         }
-        if let (Halt::Charts(_), g7_engine::FaultKind::Unstable { cycle }) = (halt, fault.kind) {
-            let cycle: Vec<String> = self.cycle(runner, cycle).iter().map(|s| format!("{{{s}}}")).collect();
-            text.push_str(&format!(": {}", cycle.join(" -> ")));
-        }
-        text
     }
 
     /// The place in the text of the fault that stopped the run, if it has one.
@@ -450,11 +445,18 @@ pub struct Conflicts(BTreeSet<Addr>);
 impl Conflicts {
     /// A sentence about the conflict of the latest scan, if there is one that was not reported
     /// before.
-    pub fn of(&mut self, bench: &Bench, runner: &Runner) -> Option<String> {
+    pub fn of(&mut self, bench: &Bench, runner: &Runner) -> Option<Said> {
         let addr = runner.report().conflict.filter(|a| self.0.insert(*a))?;
-        let name = bench.compiled.symbols.variable_at(addr).map_or("a variable", |v| &v.name);
-        let now = Nanos::new(runner.state().now()).plain();
-        Some(format!("conflicting assignment: actions of one pass gave `{name}` different values at {now}"))
+        let now = Said::foreign(Nanos::new(runner.state().now()).plain());
+        Some(match bench.compiled.symbols.variable_at(addr) {
+            Some(v) => say!(
+                "conflicting assignment: actions of one pass gave `{}` different values at {now}",
+                v.name
+            ),
+            None => {
+                say!("conflicting assignment: actions of one pass gave a variable different values at {now}")
+            }
+        })
     }
 }
 

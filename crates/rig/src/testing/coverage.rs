@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use g7_compile::ir::{Action, ActionKind, Unit};
 use g7_engine::{Code, Contribution, State, StepId, eval};
-use g7_model::Span;
+use g7_model::{Said, Span, say};
 
 use crate::Bench;
 use crate::Source;
@@ -36,6 +36,36 @@ pub enum Sort {
 impl Sort {
     /// All, in the order of [`Coverage::sorts`].
     pub const ALL: [Sort; 4] = [Sort::Step, Sort::Transition, Sort::Action, Sort::Branch];
+
+    /// The key in reports for programs.
+    pub fn key(self) -> &'static str {
+        match self {
+            Sort::Step => "steps",
+            Sort::Transition => "transitions",
+            Sort::Action => "actions",
+            Sort::Branch => "branches",
+        }
+    }
+
+    /// The word for several.
+    pub fn plural(self) -> Said {
+        match self {
+            Sort::Step => say!("steps"),
+            Sort::Transition => say!("transitions"),
+            Sort::Action => say!("actions"),
+            Sort::Branch => say!("branches"),
+        }
+    }
+
+    /// The word for one.
+    pub fn one(self) -> Said {
+        match self {
+            Sort::Step => say!("step"),
+            Sort::Transition => say!("transition"),
+            Sort::Action => say!("action"),
+            Sort::Branch => say!("branch"),
+        }
+    }
 }
 
 /// All elements of one kind, in the order of the text.
@@ -68,13 +98,13 @@ struct Lasting {
 }
 
 impl Coverage {
-    /// The four kinds of elements with their headings.
-    pub fn sorts(&self) -> [(&'static str, &Rows); 4] {
+    /// The four kinds of elements.
+    pub fn sorts(&self) -> [(Sort, &Rows); 4] {
         [
-            ("steps", &self.steps),
-            ("transitions", &self.transitions),
-            ("actions", &self.actions),
-            ("branches", &self.branches),
+            (Sort::Step, &self.steps),
+            (Sort::Transition, &self.transitions),
+            (Sort::Action, &self.actions),
+            (Sort::Branch, &self.branches),
         ]
     }
 

@@ -4,12 +4,12 @@ use std::collections::BTreeSet;
 
 use g7_engine::eval;
 use g7_host::{Chronogram, Clock, Halt, Kind, Recording, Runner, Start, Style, Value, read_text};
-use g7_model::{Nanos, Span, Type};
+use g7_model::{Nanos, Said, Span, Type, say};
 
 use super::coverage::Coverage;
 use super::statements::{Check, Does, Line, Plan};
 use crate::Source;
-use crate::{Answer, Bench, Conflicts, Item};
+use crate::{Answer, Bench, Conflicts, Item, fault};
 
 /// The failure of a test, with what helps to understand it.
 #[derive(Clone, Debug, Default)]
@@ -19,7 +19,7 @@ pub struct Defect {
     /// The same place as `path:line:column`.
     pub place: String,
     /// A sentence that says what happened, without the expression.
-    pub what: String,
+    pub what: Said,
     /// The failed condition as written; empty if no condition failed.
     pub expected: String,
     /// The names in the condition, with their values.
@@ -39,6 +39,14 @@ pub struct Defect {
 }
 
 impl Defect {
+    /// The event, with the condition that failed.
+    pub fn sentence(&self) -> Said {
+        if self.expected.is_empty() {
+            return self.what.clone();
+        }
+        say!("{}: {}", self.what, Said::foreign(&*self.expected))
+    }
+
     /// Adds what only the source knows: places and the text of the condition.
     pub(super) fn describe(&mut self, source: &Source) {
         self.place = source.place(self.at);
@@ -56,7 +64,7 @@ pub(super) struct Done {
     pub(super) simulated: Nanos,
     pub(super) scans: u64,
     /// Observations that did not make the test fail.
-    pub(super) notes: Vec<String>,
+    pub(super) notes: Vec<Said>,
 }
 
 /// Why the execution of the statements stops.
@@ -127,7 +135,7 @@ struct Exec<'b, 'c, 'l> {
     /// The statement that is being executed.
     at: Span,
     conflicts: Conflicts,
-    notes: Vec<String>,
+    notes: Vec<Said>,
     limit: Option<Limit<'l>>,
 }
 
@@ -158,8 +166,9 @@ impl<'b> Exec<'b, '_, '_> {
         if !limit.is_over() {
             return Ok(());
         }
-        let what = format!("ended after {} of real time, the limit of a test", limit.length.plain());
-        let Stop::Failed(mut defect) = self.failed(&what, None) else { return Ok(()) };
+        let length = Said::foreign(limit.length.plain());
+        let what = say!("ended after {length} of real time, the limit of a test");
+        let Stop::Failed(mut defect) = self.failed(what, None) else { return Ok(()) };
         defect.overdue = true;
         Err(Stop::Failed(defect))
     }
@@ -172,10 +181,10 @@ impl<'b> Exec<'b, '_, '_> {
             Does::Wait(time) => self.pass_time(*time),
             Does::WaitUntil(check, within) => self.wait_until(check, *within),
             Does::Scan(count) => (0..*count).try_for_each(|_| self.scan()),
-            Does::Expect(checks) => checks.iter().try_for_each(|c| self.expect(c, "expected")),
+            Does::Expect(checks) => checks.iter().try_for_each(|c| self.expect(c, say!("expected"))),
             Does::ExpectFault(word) => match self.runner.halt() {
                 Some(halt) => self.expect_fault(halt, word.as_deref()),
-                None => Err(self.failed("expected a fault, there is none", None)),
+                None => Err(self.failed(say!("expected a fault, there is none"), None)),
             },
             Does::Always(checks, body) => self.always(checks, body),
             Does::Force(item, ask) => {
@@ -221,7 +230,7 @@ impl<'b> Exec<'b, '_, '_> {
         done.map_err(Stop::Fault)?;
         self.notes.extend(self.conflicts.of(self.bench, &self.runner));
         for check in self.always.clone() {
-            self.expect(check, "this did not hold throughout")?;
+            self.expect(check, say!("this did not hold throughout"))?;
         }
         Ok(())
     }
@@ -259,8 +268,8 @@ impl<'b> Exec<'b, '_, '_> {
         let end = self.now() + within;
         while !self.holds(check)? {
             if self.now() >= end {
-                let what = format!("not true within {}", within.plain());
-                return Err(self.failed(&what, Some(check)));
+                let what = say!("not true within {}", Said::foreign(within.plain()));
+                return Err(self.failed(what, Some(check)));
             }
             self.scan()?;
         }
@@ -275,7 +284,7 @@ impl<'b> Exec<'b, '_, '_> {
         done
     }
 
-    fn expect(&mut self, check: &'b Check, what: &str) -> Result<(), Stop> {
+    fn expect(&mut self, check: &'b Check, what: Said) -> Result<(), Stop> {
         if self.holds(check)? { Ok(()) } else { Err(self.failed(what, Some(check))) }
     }
 
@@ -283,8 +292,12 @@ impl<'b> Exec<'b, '_, '_> {
         let Halt::Charts(fault) = halt else { return Err(Stop::Fault(halt)) };
         match word {
             Some(word) if word != fault.kind.word() => {
-                let what = format!("expected fault {word}, got {}", self.bench.halt(&self.runner, halt));
-                Err(self.failed(&what, None))
+                let what = say!(
+                    "expected fault {}, got {}",
+                    Said::foreign(word),
+                    self.bench.halt(&self.runner, halt)
+                );
+                Err(self.failed(what, None))
             }
             _ => Ok(()),
         }
@@ -312,10 +325,8 @@ impl<'b> Exec<'b, '_, '_> {
             self.runner.charts_mut()
         };
         // Expressions can still be evaluated on a stopped state.
-        eval(program, state, answer.code).map_err(|fault| {
-            let what = format!("this cannot be evaluated: {}", fault.kind);
-            self.failed(&what, None)
-        })
+        eval(program, state, answer.code)
+            .map_err(|stopped| self.failed(say!("this cannot be evaluated: {}", fault(stopped.kind)), None))
     }
 
     /// The value of an expression, converted to the type of an item.
@@ -330,10 +341,8 @@ impl<'b> Exec<'b, '_, '_> {
         if item.kind == Kind::Text {
             return Ok(Value::Text(read_text(words, word as u32).into()));
         }
-        convert(word, answer.ty, item).ok_or_else(|| {
-            let what = format!("`{}` ({}) cannot hold this value", item.name, item.ty);
-            self.failed(&what, None)
-        })
+        convert(word, answer.ty, item)
+            .ok_or_else(|| self.failed(say!("`{}` ({}) cannot hold this value", item.name, item.ty), None))
     }
 
     /// The value of a name in a condition, as text.
@@ -348,7 +357,7 @@ impl<'b> Exec<'b, '_, '_> {
         })
     }
 
-    fn failed(&mut self, what: &str, check: Option<&Check>) -> Stop {
+    fn failed(&mut self, what: Said, check: Option<&Check>) -> Stop {
         let mut got = Vec::new();
         for (name, ask) in check.iter().flat_map(|c| &c.mentions) {
             // A mention is a single name and cannot fail, so this call does not recurse.
@@ -359,7 +368,7 @@ impl<'b> Exec<'b, '_, '_> {
         let names: Vec<&str> = got.iter().map(|(n, _)| n.as_str()).collect();
         Stop::Failed(Box::new(Defect {
             at: check.map_or(self.at, |c| c.at),
-            what: what.to_owned(),
+            what,
             time: self.now(),
             situation: self.situation(),
             chronogram: self.chronogram(&names),
@@ -372,7 +381,7 @@ impl<'b> Exec<'b, '_, '_> {
     fn fault(&mut self, halt: Halt) -> Box<Defect> {
         Box::new(Defect {
             at: self.at,
-            what: format!("fault: {}", self.bench.halt(&self.runner, halt)),
+            what: say!("fault: {}", self.bench.halt(&self.runner, halt)),
             origin_at: self.bench.halt_place(halt),
             time: self.now(),
             situation: self.situation(),

@@ -16,7 +16,7 @@ mod statements;
 use std::collections::BTreeSet;
 
 use g7_host::Clock;
-use g7_model::{Nanos, Problem, ProfileName, Scenario, Severity, Span};
+use g7_model::{Nanos, Problem, ProfileName, Said, Scenario, Severity, Span};
 
 use crate::bench::{self, Bench};
 use crate::{Error, Source};
@@ -44,7 +44,7 @@ pub struct Outcome {
     /// The real time that it took.
     pub took: Nanos,
     /// Observations that did not make the test fail.
-    pub notes: Vec<String>,
+    pub notes: Vec<Said>,
 }
 
 /// Options of a run of tests.

@@ -20,6 +20,7 @@ use std::path::Path;
 use std::str::FromStr;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use g7_model::{Said, say};
 use rusqlite::{Connection, ErrorCode, OptionalExtension as _, Transaction, params};
 use sha2::{Digest as _, Sha256};
 
@@ -88,11 +89,11 @@ impl fmt::Display for Role {
 }
 
 impl FromStr for Role {
-    type Err = String;
+    type Err = Said;
 
-    fn from_str(text: &str) -> Result<Role, String> {
+    fn from_str(text: &str) -> Result<Role, Said> {
         let found = Role::ALL.into_iter().find(|role| role.word() == text);
-        found.ok_or_else(|| "a role is one of viewer, operator, engineer, admin".to_owned())
+        found.ok_or_else(|| say!("a role is one of `viewer`, `operator`, `engineer`, `admin`"))
     }
 }
 
@@ -102,8 +103,8 @@ impl From<rusqlite::Error> for UserError {
     }
 }
 
-fn refused<T>(why: impl Into<String>) -> Result<T, UserError> {
-    Err(UserError::Refused(why.into()))
+fn refused<T>(why: Said) -> Result<T, UserError> {
+    Err(UserError::Refused(why))
 }
 
 /// A user.
@@ -159,8 +160,7 @@ pub fn session_hash(secret: &str) -> SessionHash {
 /// The system gives no random numbers.
 pub fn secret() -> Result<String, UserError> {
     let mut bytes = [0; 32];
-    getrandom::fill(&mut bytes)
-        .map_err(|e| UserError::Refused(format!("the system gives no random numbers: {e}")))?;
+    getrandom::fill(&mut bytes).map_err(|e| UserError::Refused(password::no_chance(&e)))?;
     Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
 }
 
@@ -234,13 +234,13 @@ impl Users {
         let mut file = self.lock();
         let step = file.transaction_with_behavior(rusqlite::TransactionBehavior::Immediate)?;
         if first && admins(&step)? > 0 {
-            return refused("there is an admin already");
+            return refused(say!("there is an admin already"));
         }
         let Kept { memory, passes, salt, hash } = kept;
         let row = params![name, role.word(), memory, passes, salt, hash, now as i64];
         match step.execute("INSERT INTO user VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, 0)", row) {
             Err(e) if e.sqlite_error_code() == Some(ErrorCode::ConstraintViolation) => {
-                return refused(format!("there is a user `{name}` already"));
+                return refused(say!("there is a user `{name}` already"));
             }
             done => done?,
         };
@@ -255,7 +255,7 @@ impl Users {
     pub fn set_role(&self, name: &str, role: Role) -> Result<(), UserError> {
         self.change(name, |step, was| {
             if was == Role::Admin && role != Role::Admin && admins(step)? < 2 {
-                return refused(format!("`{name}` is the last admin: make another one first"));
+                return refused(say!("`{name}` is the last admin: make another one first"));
             }
             step.execute("UPDATE user SET role = ?2 WHERE name = ?1", (name, role.word()))?;
             Ok(())
@@ -285,7 +285,7 @@ impl Users {
     pub fn remove(&self, name: &str) -> Result<(), UserError> {
         self.change(name, |step, was| {
             if was == Role::Admin && admins(step)? < 2 {
-                return refused(format!("`{name}` is the last admin: make another one first"));
+                return refused(say!("`{name}` is the last admin: make another one first"));
             }
             step.execute("DELETE FROM user WHERE name = ?1", [name])?;
             Ok(())
@@ -312,7 +312,7 @@ impl Users {
         let was = step
             .query_row("SELECT role FROM user WHERE name = ?1", [name], |row| role_of(row.get(0)?))
             .optional()?;
-        let Some(was) = was else { return refused(format!("there is no user `{name}`")) };
+        let Some(was) = was else { return refused(say!("there is no user `{name}`")) };
         step.execute("DELETE FROM session WHERE user = ?1", [name])?;
         step.execute("UPDATE user SET changes = changes + 1 WHERE name = ?1", [name])?;
         work(&step, was)?;
@@ -355,7 +355,7 @@ impl Users {
         let row = params![session_hash(&secret), name, origin, now as i64];
         match self.lock().execute("INSERT INTO session VALUES (?1, ?2, ?3, ?4, ?4)", row) {
             Err(e) if e.sqlite_error_code() == Some(ErrorCode::ConstraintViolation) => {
-                refused(format!("there is no user `{name}`"))
+                refused(say!("there is no user `{name}`"))
             }
             done => {
                 done?;
@@ -421,7 +421,10 @@ fn own(path: &Path) -> Result<(), UserError> {
         name.push(end);
         match std::fs::set_permissions(&name, std::fs::Permissions::from_mode(0o600)) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return refused(format!("it cannot be made its owner's alone: {e}"));
+                return refused(say!(
+                    "it cannot be made its owner's alone: {}",
+                    Said::foreign(e.to_string())
+                ));
             }
             _ => {}
         }
@@ -447,7 +450,7 @@ fn role_of(text: String) -> rusqlite::Result<Role> {
 fn fit_name(name: &str) -> Result<(), UserError> {
     let fits = |c: char| c.is_alphanumeric() || "._-@".contains(c);
     if name.is_empty() || name.chars().count() > 40 || !name.chars().all(fits) {
-        return refused("a name has 1 to 40 letters, digits, `.`, `_`, `-` or `@`");
+        return refused(say!("a name has 1 to 40 letters, digits, `.`, `_`, `-` or `@`"));
     }
     Ok(())
 }

@@ -4,6 +4,7 @@
 //! passes, 1 lane). They stand beside each hash, so that a later G7 can ask for more.
 
 use argon2::{Algorithm, Argon2, Params, Version};
+use g7_model::{Said, say};
 
 use super::error::UserError;
 
@@ -27,8 +28,7 @@ pub(super) struct Kept {
 impl Kept {
     pub(super) fn of(password: &str) -> Result<Kept, UserError> {
         let mut salt = [0; 16];
-        getrandom::fill(&mut salt)
-            .map_err(|e| UserError::Refused(format!("the system gives no random numbers: {e}")))?;
+        getrandom::fill(&mut salt).map_err(|e| UserError::Refused(no_chance(&e)))?;
         let (memory, passes) = COST;
         let hash = hashed(password, &salt, memory, passes)?;
         Ok(Kept { memory, passes, salt, hash })
@@ -44,11 +44,18 @@ impl Kept {
     }
 }
 
+/// The system gives no random numbers.
+pub(super) fn no_chance(error: &getrandom::Error) -> Said {
+    say!("the system gives no random numbers: {}", Said::foreign(error.to_string()))
+}
+
 fn hashed(password: &str, salt: &[u8], memory: u32, passes: u32) -> Result<[u8; 32], UserError> {
-    let broken = |e: argon2::Error| UserError::Refused(format!("the password cannot be checked: {e}"));
+    let broken = |e: argon2::Error| {
+        UserError::Refused(say!("the password cannot be checked: {}", Said::foreign(e.to_string())))
+    };
     // A file that asks for gigabytes is not served.
     if memory > 1 << 20 || passes > 64 {
-        return Err(UserError::Refused("the file of the users asks for too much memory".to_owned()));
+        return Err(UserError::Refused(say!("the file of the users asks for too much memory")));
     }
     let params = Params::new(memory, passes, 1, Some(32)).map_err(broken)?;
     let mut hash = [0; 32];
@@ -61,16 +68,16 @@ fn hashed(password: &str, salt: &[u8], memory: u32, passes: u32) -> Result<[u8; 
 /// Refuses a password that is guessed at once.
 pub(super) fn fit(name: &str, password: &str) -> Result<(), UserError> {
     let why = if password.chars().count() < LEAST {
-        format!("a password has at least {LEAST} letters")
+        say!("a password has at least {LEAST} letters")
     } else if password.len() > MOST {
-        format!("a password has at most {MOST} bytes")
+        say!("a password has at most {MOST} bytes")
     } else if password.to_lowercase().contains(&name.to_lowercase())
         && !name.is_empty()
         && password.len() < 2 * LEAST
     {
-        "the password must not contain the name".to_owned()
+        say!("the password must not contain the name")
     } else if password.chars().all(|c| password.starts_with(c)) {
-        "one letter again and again is no password".to_owned()
+        say!("one letter again and again is no password")
     } else {
         return Ok(());
     };

@@ -6,13 +6,13 @@ mod picture;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use g7_model::{Nanos, ProfileName, say};
+use g7_model::{Nanos, ProfileName, Said, say};
 use g7_verify::{Budget, Kind, Model, ask, situations, words};
 
 use named::Named;
 
 use crate::failure::{Failure, Verdict, raw};
-use crate::message::talk;
+use crate::message::{talk, tell};
 use crate::report::{self, Tally};
 use crate::{files, sources, values};
 
@@ -112,17 +112,18 @@ pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
         Form::Svg => picture::svg(&named),
     };
     files::deliver(args.output.as_deref(), text.as_bytes())?;
-    talk!(
+    tell(say!(
         "{drawn} situations and {} edges, from {} states by {} scans",
         graph.edges.len(),
         graph.states,
         graph.scans
-    );
+    ));
     Ok(match &graph.open {
         None => Verdict::Fine,
         Some(open) => {
-            let ([why, ..], [help, ..]) = (words::why(&open.reason), words::way_on(&open.reason));
-            talk!("the graph is not complete: {why}; {help}");
+            let why = Said::in_each(words::why(&open.reason));
+            let help = Said::in_each(words::way_on(&open.reason));
+            tell(say!("the graph is not complete: {why}; {help}"));
             Verdict::Open
         }
     })

@@ -210,6 +210,11 @@ async fn a_user_logs_in_and_does_what_the_role_allows() {
             assert_eq!(reply.status, status, "{user} {method} {path}: {}", reply.text());
             if status == 403 {
                 assert!(reply.text().contains("needs the role"), "{}", reply.text());
+                let cookie = format!("__Host-g7={session}");
+                let french = site
+                    .ask_with(method, path, &[("Cookie", &cookie), ("Accept-Language", "fr")], body)
+                    .await;
+                assert!(french.is(403).text().contains("demande le rôle"), "{user} {path}");
             }
         }
     }

@@ -15,6 +15,7 @@ use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use axum::routing::post;
 use axum::{Extension, Json, Router};
+use g7_model::say;
 use g7_online::setup::{Change, Plain, edit};
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -67,7 +68,7 @@ async fn change(State(shared): State<Shared>, Extension(who): Extension<Who>, re
     }
     let Edit { chart, hash, changes } = json_body(request).await?;
     if changes.len() > CHANGES {
-        return Err(Refusal::bad(format!("at most {CHANGES} changes are made at once")));
+        return Err(Refusal::bad(say!("at most {CHANGES} changes are made at once")));
     }
     let changes = changes.into_iter().map(read).collect::<Result<Vec<Change>, Refusal>>()?;
     let (done, sight) = aside(move || {
@@ -101,7 +102,7 @@ fn read(wish: Wish) -> Result<Change, Refusal> {
 }
 
 fn plain(value: Value) -> Result<Plain, Refusal> {
-    let none = || Refusal::bad("a setting is a text, a number, true or false, or a table");
+    let none = || Refusal::bad(say!("a setting is a text, a number, true or false, or a table"));
     Ok(match value {
         Value::String(text) => Plain::Text(text),
         Value::Bool(on) => Plain::Flag(on),

@@ -1,7 +1,7 @@
 //! A chart and its io file as the page shows them: signals, devices, channels, and what is wrong where.
 
 use g7_host::Kind;
-use g7_model::{FileId, Problem, Severity};
+use g7_model::{FileId, Problem, Severity, say};
 use g7_online::Wiring;
 use g7_online::setup::catalogue::{
     Argument, CONTROLLER, Carries, Form, KINDS, KindRow, Point, Setting, Usual,
@@ -63,11 +63,10 @@ impl Sight {
             Err(refusal) => return Err(refusal),
         };
         let text = String::from_utf8(found.clone().unwrap_or_default())
-            .map_err(|_| Refusal::bad(format!("{io} is not UTF-8 text: mend it in a text editor first")))?;
+            .map_err(|_| Refusal::bad(say!("`{io}` is not UTF-8 text: mend it in a text editor first")))?;
         let source = Source::new(&chart.path, bytes, 0);
         let options = Options { plant: Some("none"), ..Options::default() };
-        let (bench, of_chart) =
-            g7_rig::build(&source, &options).map_err(|why| Refusal::bad(why.to_string()))?;
+        let (bench, of_chart) = g7_rig::build(&source, &options).map_err(|why| Refusal::bad(why.said()))?;
         let (setup, mut problems) = setup::read(&text, FileId(1));
         problems.extend(g7_online::lacking(&setup));
         let mut wiring = Wiring::default();
