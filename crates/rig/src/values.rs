@@ -77,7 +77,8 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, Said> {
                 (0, (1i128 << bits) - 1)
             };
             if value < least || value > most {
-                return Err(say!("`{plain}` is outside `{least} .. {most}`"));
+                let range = Said::foreign(format!("{least} .. {most}"));
+                return Err(say!("`{plain}` is outside {range}"));
             }
             Ok(Value::Word(value as u64))
         }

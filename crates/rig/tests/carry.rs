@@ -4,7 +4,7 @@
 use std::path::{Path, PathBuf};
 
 use g7_host::{Runner, Value};
-use g7_model::Nanos;
+use g7_model::{Nanos, Said};
 use g7_rig::{Bench, Carried, Item, Options, Role, Source, build, carry};
 
 fn source(text: &str) -> Source {
@@ -37,6 +37,10 @@ fn changed(before: &str, after: &str, inputs: &[(&str, u64)], scans: u32) -> (Be
     (is, carried)
 }
 
+fn texts(lost: &[Said]) -> Vec<&str> {
+    lost.iter().map(Said::as_str).collect()
+}
+
 fn situation(bench: &Bench, runner: &Runner) -> String {
     bench.situation(runner.state()).join(",")
 }
@@ -53,7 +57,7 @@ fn situation_values_and_step_times_go_on() {
         PUMP.replace("when not a", "when not a and X2.t > 5s").replace("step 2 {", "step 3\n step 2 {");
     let after = after.replace("}\n}\n", "}\n 2 -> 3 when FALSE\n 3 -> 1 when TRUE\n}\n");
     let (bench, Carried { mut runner, lost }) = changed(PUMP, &after, &[("a", 1)], 100);
-    assert_eq!(lost, Vec::<String>::new());
+    assert_eq!(texts(&lost), [""; 0]);
     assert_eq!(situation(&bench, &runner), "2");
     assert_eq!(word(&bench, &runner, "pump"), 1);
     bench.set(&mut runner, item(&bench, "a"), &Value::Word(0));
@@ -73,7 +77,7 @@ fn what_goes_away_is_said() {
     let after = "input a : BOOL\noutput pump : BOOL\nvar n : BOOL\nchart G {\n initial step 1\n step 4 { N pump }\n 1 -> 4 when a\n 4 -> 1 when n\n}\n";
     let (bench, Carried { runner, lost }) = changed(&before, after, &[("a", 1)], 3);
     assert_eq!(
-        lost,
+        texts(&lost),
         ["step `2` is active and no longer exists", "`n` was INT and is BOOL: its value 7 is lost"]
     );
     assert_eq!(situation(&bench, &runner), "");
@@ -91,7 +95,7 @@ fn a_chart_more_begins_and_a_pulse_does_not_run_again() {
     let before = "profile iec61131\ninput a : BOOL\nvar n : INT\noutput q : BOOL\nchart G {\n initial step 1\n step 2 { P1 n := n + 1; S q }\n 1 -> 2 when a\n 2 -> 1 when not a\n}\n";
     let after = format!("{before}chart H {{\n initial step 10\n}}\n");
     let (bench, Carried { mut runner, lost }) = changed(before, &after, &[("a", 1)], 3);
-    assert_eq!(lost, Vec::<String>::new());
+    assert_eq!(texts(&lost), [""; 0]);
     for _ in 0..3 {
         runner.scan().expect("no fault");
     }
@@ -125,7 +129,7 @@ fn a_delay_of_an_action_without_a_name_goes_on() {
     let after = before.replace("chart G", &format!("output r : BOOL\n{front}chart G"));
     // Step 2 was activated in the second scan; four scans of its delay have passed.
     let (bench, Carried { mut runner, lost }) = changed(&before, &after, &[("a", 1)], 4);
-    assert_eq!(lost, Vec::<String>::new());
+    assert_eq!(texts(&lost), [""; 0]);
     let counts = seen(&bench, &mut runner, "n", 5);
     let (_, Carried { runner: mut unchanged, .. }) = changed(&before, &before, &[("a", 1)], 4);
     assert_eq!(counts, seen(&self::bench(&source(&before)), &mut unchanged, "n", 5));
@@ -144,7 +148,7 @@ fn the_time_of_a_macro_step_goes_on() {
     let after = chart.replace("chart G", &format!("{front}chart G"));
     // At the change, 20 ms have passed.
     let (bench, Carried { mut runner, lost }) = changed(chart, &after, &[], 2);
-    assert_eq!(lost, Vec::<String>::new());
+    assert_eq!(texts(&lost), [""; 0]);
     let mut both = Vec::new();
     for _ in 0..6 {
         runner.scan().expect("no fault");
@@ -160,7 +164,7 @@ fn scans_and_time_of_a_macro_step_go_on_where_the_clock_counts_scans() {
     let after = chart.replace("chart G", &format!("{front}chart G"));
     // The macro-steps are activated in the second scan, at 10 ms; the change comes three scans later.
     let (bench, Carried { mut runner, lost }) = changed(chart, &after, &[("a", 1)], 4);
-    assert_eq!(lost, Vec::<String>::new());
+    assert_eq!(texts(&lost), [""; 0]);
     runner.scan().expect("no fault");
     let program = &bench.compiled.program;
     let mut found = Vec::new();
@@ -218,9 +222,9 @@ fn delays_that_run_or_are_over_are_said_to_begin_anew() {
     let before = "input a, b : BOOL\noutput q, r : BOOL\nchart G {\n initial step 1 {\n N q if 20ms/a\n N r if 9s/b\n }\n}\n";
     let lost = |inputs: &[(&str, u64)]| {
         let said = changed(before, before, inputs, 5).1.lost;
-        said.iter().filter(|s| s.contains("delay")).cloned().collect::<Vec<_>>()
+        texts(&said).into_iter().filter(|s| s.contains("delay")).map(str::to_owned).collect::<Vec<_>>()
     };
-    assert_eq!(lost(&[]), Vec::<String>::new());
+    assert_eq!(lost(&[]), [""; 0]);
     // The delay of `a` is over, that of `b` is still running.
     let one = lost(&[("a", 1)]);
     assert_eq!(one, ["a running delay restarts"]);

@@ -159,7 +159,13 @@ fn wired(what: &Description, bench: &Bench, wires: &[(String, String)]) -> Resul
     let pairs = to_plant.iter().map(|(at, v)| (*at, v)).chain(to_charts.iter().map(|(v, at)| (*at, v)));
     for (item, v) in pairs.filter_map(|(at, v)| Some((bench.items.get(at)?, v))) {
         if !go_together(item.kind, v.ty) {
-            return Err(say!("`{}` is {} here, and `{}` is `{:?}` there", item.name, item.ty, v.name, v.ty));
+            return Err(say!(
+                "`{}` is {} here, and `{}` is {} there",
+                item.name,
+                item.ty,
+                v.name,
+                raw(format!("{:?}", v.ty))
+            ));
         }
     }
     let mut twice: Vec<&str> = to_plant.iter().map(|(_, v)| v.name.as_str()).collect();
