@@ -9,3 +9,4 @@ mod support;
 mod charts;
 mod corpus;
 mod hostile;
+mod written;
