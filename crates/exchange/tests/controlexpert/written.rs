@@ -335,6 +335,92 @@ fn conformance_cases_and_examples_run_as_before() {
     assert!(carried.len() > 60, "{carried:#?}");
 }
 
+/// Numbers at random.
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, limit: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % limit
+    }
+
+    fn of<'a>(&mut self, list: &[&'a str]) -> &'a str {
+        list[self.below(list.len())]
+    }
+}
+
+/// A chart at random: steps with actions, and transitions between one or several of them.
+fn chart(seed: u64) -> String {
+    let mut random = Random(seed.wrapping_mul(0x9E37_79B9_7F4A_7C15));
+    let actions = [
+        "N v",
+        "S w",
+        "R w",
+        "D 20ms v",
+        "L 30ms u",
+        "DS 20ms w",
+        "P u",
+        "P1 n := n + 1",
+        "P0 n := n * 2",
+        "N m := n",
+        "N m := m + 1 if a",
+    ];
+    let conditions = [
+        "a",
+        "b",
+        "not c",
+        "a and not b",
+        "↑a",
+        "↓b or c",
+        "S0.T >= 20ms",
+        "S1.X and c",
+        "n < 5",
+        "TRUE",
+        "30ms/XS1",
+    ];
+    let steps = 2 + random.below(7);
+    let mut text = String::from(
+        "profile unity input a, b, c : BOOL output u, v : BOOL var w : BOOL var n, m : INT\nchart G {\n",
+    );
+    for step in 0..steps {
+        let list: Vec<&str> = (0..random.below(3)).map(|_| random.of(&actions)).collect();
+        let word = if step == 0 { "initial step" } else { "step" };
+        text += &format!("{word} S{step} {{\n{}\n}}\n", list.join("\n"));
+    }
+    for _ in 0..steps + random.below(6) {
+        let mut ends = || {
+            let count = if random.below(5) == 0 { 2 } else { 1 };
+            let set: BTreeSet<usize> = (0..count).map(|_| random.below(steps)).collect();
+            format!("({})", set.iter().map(|s| format!("S{s}")).collect::<Vec<_>>().join(", "))
+        };
+        let (from, to) = (ends(), ends());
+        text += &format!("{from} -> {to} when {}\n", random.of(&conditions));
+    }
+    text + "}\n"
+}
+
+#[test]
+fn charts_at_random_run_as_before() {
+    let mut carried = 0;
+    for seed in 1..600 {
+        let (document, problems) = g7_syntax::parse(&chart(seed), FileId(0));
+        if !errors(&problems).is_empty() || g7_compile::compile(&document).0.is_none() {
+            continue;
+        }
+        let file = support::export("controlexpert", &document);
+        if !errors(&file.problems).is_empty() {
+            continue;
+        }
+        let name = format!("seed {seed}");
+        one_object_in_each_cell(&name, &file.text);
+        let again = back(&name, &file.text);
+        assert_eq!(links(&document), links(&again), "{name}\n{}", file.text);
+        runs_the_same(&name, &document, &again);
+        carried += 1;
+    }
+    assert!(carried > 150, "{carried}");
+}
+
 #[test]
 fn macro_steps_go_out_with_their_expansions() {
     let document = parse(
@@ -420,8 +506,8 @@ fn what_cannot_be_said_is_a_problem_with_its_place() {
                initial step 1 { N k := 1 if r  N r if a  SD 1s r  on ↑a: k := 2 }
                step 2 { force H := {}  D 1500us r  P1 { IF a THEN SETSTEP(X1) END_IF } }
                t7: 1 -> 2 when 2s/a on clearing { k := 0 }
-               2 -> when ↑(a or r)
-               -> 2 when LEN('x') = 1
+               2 -> () when a
+               () -> 2 when a
                post { k := 0 }
              }
              chart H { enclosing step 5 { enclose I } initial step 6 6 -> 5 when a }
@@ -439,6 +525,7 @@ fn what_cannot_be_said_is_a_problem_with_its_place() {
             none(6, "a function"),
             "G0604 7: a body before or behind the evolution: a section in SFC has none; write it as a section in Structured Text".to_string(),
             none(8, "a period of such a chart"),
+            "G0611 9: `1` is called `S1` there; 4 more names are changed as well".to_string(),
             none(12, "a transition without a step behind it"),
             none(13, "a transition without a step before it"),
             "G0604 14: a body before or behind the evolution: a section in SFC has none; write it as a section in Structured Text".to_string(),
@@ -463,6 +550,7 @@ fn what_cannot_be_said_is_a_problem_with_its_place() {
              }"
         ),
         [
+            "G0611 5: `1` is called `S1` there; 1 more names are changed as well".to_string(),
             none(5, "such a condition of an action"),
             none(5, "a condition of an action"),
             none(5, "the qualifier `SD`"),
@@ -489,17 +577,17 @@ fn joints_and_branches_that_the_grid_cannot_have_are_refused() {
     assert_eq!(
         said(
             "profile unity
-             input a : BOOL at %I0.1.0
-             chart G { initial step 1 step 2 step 3 step 4
-               1 -> (2, 3) when a
-               (2, 3) -> 4 when a
-               3 -> 1 when a
-               4 -> (3, 1) when a }"
+             input go : BOOL at %I0.1.0
+             chart G { initial step A step B step C step D
+               A -> (B, C) when go
+               (B, C) -> D when go
+               C -> A when go
+               D -> (C, A) when go }"
         ),
         [
-            format!("G0604 5: a transition behind several steps, where `3` has another one besides: {joint}"),
+            format!("G0604 5: a transition behind several steps, where `C` has another one besides: {joint}"),
             format!(
-                "G0604 7: a transition before several steps, where `3` begins other branches too: {branch}"
+                "G0604 7: a transition before several steps, where `C` begins other branches too: {branch}"
             ),
         ]
     );
@@ -551,7 +639,9 @@ fn several_initial_steps_need_branches_that_exclude_each_other() {
     let text = |second: &str| {
         format!(
             "profile unity input a, b : BOOL at %I0.1.0
-             chart G {{ initial step 1 initial step 2 step 3 1 -> 3 when a 1 -> 2 when {second} (2, 3) -> 1 when b }}"
+             chart G {{ initial step A initial step B step C A -> C when a
+               A -> B when {second}
+               (B, C) -> A when b }}"
         )
     };
     let begins = "a second initial step: Control Expert takes it with the option for several tokens alone";
