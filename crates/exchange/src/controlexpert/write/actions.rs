@@ -11,7 +11,7 @@ use g7_model::{
 use super::Writer;
 use super::text::constant;
 
-/// What an action of a step drives: the element, and the name in it.
+/// The name that an action of a step drives, with its element.
 type Named = (&'static str, String);
 
 impl Writer<'_> {

@@ -91,7 +91,7 @@ pub(super) fn grid(plan: &Plan) -> Grid {
     grid
 }
 
-/// What is drawn next, and where.
+/// The thing that is drawn next, and its place.
 #[derive(Clone, Copy, Debug)]
 enum Next {
     Step(usize, Spot),
@@ -141,7 +141,7 @@ impl Maker<'_> {
                 _ => Next::Step(step, (right, 0)),
             };
             right = self.run(Some(next), (right, right + 1), 0);
-            // What is left waits for nothing that would still come.
+            // All that still waits is drawn now, because nothing that it waits for will come.
             right = self.run(None, (0, right), 0);
         }
         self.grid.right = right;
@@ -247,7 +247,7 @@ impl Maker<'_> {
         self.take(below(at));
     }
 
-    /// What stands below a step.
+    /// Draws below a step, or says what is drawn there next.
     fn behind(
         &mut self,
         step: usize,
@@ -311,7 +311,7 @@ impl Maker<'_> {
         self.grid.links.push(Link { from: (Kind::Transition, from), to: (Kind::ParBranch, at) });
     }
 
-    /// What stands below a transition.
+    /// Draws below a transition, or says what is drawn there next.
     fn after(&mut self, transition: usize, at: Spot, depth: usize) -> Option<Next> {
         if let Some(set) = self.plan.set_behind(transition) {
             match self.spot_of_set(set) {
@@ -335,8 +335,8 @@ impl Maker<'_> {
         None
     }
 
-    /// What some columns come together in: a joint of parallel branches, then the steps for which
-    /// transitions wait (`own`), and at the very end (`last`) all that waits.
+    /// The thing in which branches of some columns come together: a joint of parallel branches, then the
+    /// steps for which transitions wait (`own`), and at the very end (`last`) all that waits.
     fn together(&mut self, columns: Columns, own: &mut Vec<usize>, last: bool) -> Option<Next> {
         let inside = |maker: &Self, t: &usize| {
             let spots = maker.plan.from(*t).iter().filter_map(|s| maker.spot(*s));

@@ -13,6 +13,7 @@
 mod actions;
 mod chart;
 mod declare;
+mod declared;
 mod lay;
 mod names;
 mod plan;
@@ -40,9 +41,9 @@ pub(crate) fn export(document: &Document) -> Written {
     let document = &signs::in_signs(document);
     let scopes = Scopes::new(document);
     let names = Names::new(document, &scopes);
-    let list = declare::variables(document);
-    let declared = declare::renamed(&list, &names);
-    let types = Known::new(&declared, None);
+    let list = declared::variables(document);
+    let renamed = declared::renamed(&list, &names);
+    let types = Known::new(&renamed, None);
     let speech = Speech::new(scopes, names, types);
     let owners = owners(&speech.scopes);
     let mut writer = Writer {

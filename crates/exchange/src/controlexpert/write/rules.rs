@@ -1,4 +1,4 @@
-//! What is refused as a whole: other rules of evolution, other charts, steps that a section cannot have.
+//! Refuses as a whole: other rules of evolution, other charts, steps that a section cannot have.
 
 use g7_iec::nodes;
 use g7_iec::scopes::Ref;

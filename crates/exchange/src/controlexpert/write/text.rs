@@ -20,7 +20,7 @@ const LONGEST_TIME: i64 = u32::MAX as i64;
 /// The deepest nesting of sections within sections.
 const DEEPEST: usize = 20;
 
-/// What the texts of a document are written with.
+/// The names and types of a document, with which its texts are written.
 pub(super) struct Speech<'d> {
     pub(super) scopes: Scopes<'d>,
     pub(super) names: Names<'d>,
