@@ -85,13 +85,13 @@ pub static FORMATS: [Format; 9] = [
         writer: None,
         in_dialect: None,
     },
-    // Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`).
+    // Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`); `.XSF` is written.
     Format {
         word: "controlexpert",
         title: "Control Expert",
         endings: &["xsf", "xef"],
         reader: Some(controlexpert::import),
-        writer: None,
+        writer: Some(controlexpert::export),
         in_dialect: None,
     },
     // S7-GRAPH: a block exported by TIA Portal's Openness.

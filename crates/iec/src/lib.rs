@@ -14,6 +14,7 @@
 //! - `st` reads and prints expressions, statements and declarations of Structured Text.
 //! - `il` and `ld` translate instructions and rungs into statements, and print statements as these.
 //! - `standard` rewrites a document in the forms that the standard has.
+//! - `scopes` finds the meaning of names in a document.
 //! - `signs` turns functions that do what an operator does into that operator.
 //! - `sfc` reads and writes charts as text, `plcopen` as PLCopen TC6 or IEC 61131-10 XML.
 //! - `xml`, `report` and `nodes` serve every reader of a foreign file, also those of
@@ -33,6 +34,7 @@ pub mod ld;
 pub mod nodes;
 pub mod plcopen;
 pub mod report;
+pub mod scopes;
 pub mod sfc;
 pub mod signs;
 pub mod st;

@@ -132,3 +132,19 @@ pub fn shown(text: &str) -> String {
     }
     short
 }
+
+/// One message for all names that had to be changed: the place of each, the old and the new name.
+pub fn renamed(list: &[(Span, Box<str>, String)]) -> Option<Problem> {
+    let ((at, from, to), others) = list.split_first()?;
+    let more = others.len();
+    let tail = if more > 0 { say!("; {more} more names are changed as well") } else { Said::default() };
+    let word = crate::words::everywhere().any(|w| w.eq_ignore_ascii_case(from));
+    let why = if word { say!(", because it is a word of IEC 61131-3") } else { Said::default() };
+    let what = say!("`{from}` is called `{to}` there{why}{tail}");
+    let mut problem = Problem::new(&codes::RENAMED, *at, what);
+    // Places beyond these would be pages of output; the names stand in the file that is written.
+    for (at, _, to) in others.iter().take(8) {
+        problem.related.push((*at, say!("called `{to}`")));
+    }
+    Some(problem)
+}

@@ -37,7 +37,7 @@ const CLOSING: [&str; 8] = [
 ];
 
 /// The words that no program of the standard may give to anything.
-pub(crate) fn everywhere() -> impl Iterator<Item = &'static str> {
+pub fn everywhere() -> impl Iterator<Item = &'static str> {
     EVERYWHERE.split_whitespace()
 }
 
@@ -58,4 +58,45 @@ pub(crate) fn closes(word: &str) -> bool {
     let closing = everywhere().filter(|word| word.starts_with("END_")).chain(CLOSING);
     word.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("END_"))
         && closing.into_iter().any(|end| end.eq_ignore_ascii_case(word))
+}
+
+/// An identifier of letters, digits and single `_` that begins with a letter or `_`.
+pub fn identifier(text: &str) -> String {
+    let mut out = String::new();
+    for c in text.chars() {
+        match fold(c) {
+            "" if c.is_ascii_alphanumeric() => out.push(c),
+            "" if !out.ends_with('_') => out.push('_'),
+            "" => {}
+            folded => out.push_str(folded),
+        }
+    }
+    let out = if out.len() > 1 { out.trim_end_matches('_').to_string() } else { out };
+    match out.chars().next() {
+        Some(c) if c.is_ascii_digit() => format!("N{out}"),
+        Some('_') | None => format!("v{out}"),
+        Some(_) => out,
+    }
+}
+
+/// The usual spelling of letters outside ASCII.
+fn fold(c: char) -> &'static str {
+    match c {
+        'ä' | 'å' | 'á' | 'à' | 'â' => "a",
+        'Ä' | 'Å' | 'Á' | 'À' => "A",
+        'ö' | 'ó' | 'ô' | 'ø' => "o",
+        'Ö' | 'Ø' => "O",
+        'ü' | 'ú' | 'ù' | 'û' => "u",
+        'Ü' => "U",
+        'é' | 'è' | 'ê' | 'ë' => "e",
+        'É' | 'È' => "E",
+        'í' | 'ì' | 'î' | 'ï' => "i",
+        'ç' => "c",
+        'ñ' => "n",
+        'ß' => "ss",
+        'æ' => "ae",
+        '+' => "plus",
+        '-' => "minus",
+        _ => "",
+    }
 }

@@ -42,6 +42,13 @@ pub(super) fn document<'a>(root: Node<'a, 'a>, sheets: &[Sheet<'a>], report: &mu
     let insides = sheets.iter().zip(&names).filter(|(s, _)| s.inner).rev();
     let inner: Inner = insides.map(|(s, n)| (s.name.to_uppercase(), n.clone())).collect();
     let mut layouts = Vec::new();
+    for node in sheets.iter().filter(|s| s.shared).flat_map(|s| &s.sections) {
+        items.extend(section(*node, report).and_then(|item| match item {
+            ChartItem::Action(a) => Some(Item::Action(a)),
+            ChartItem::Section(s) => Some(Item::Section(s)),
+            _ => None,
+        }));
+    }
     for (sheet, title) in sheets.iter().zip(&names) {
         let (chart, layout) = chart(sheet, title, &inner, report);
         items.push(Item::Chart(chart));
@@ -162,7 +169,7 @@ fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Cha
         place(Placed::TransitionNumber(number), node.spot, at);
         items.push(ChartItem::Transition(transition));
     }
-    for node in &sheet.sections {
+    for node in sheet.sections.iter().filter(|_| !sheet.shared) {
         items.extend(section(*node, report));
     }
     let texts: Vec<&str> = sheet.texts.iter().map(String::as_str).filter(|t| !t.is_empty()).collect();

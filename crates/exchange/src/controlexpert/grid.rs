@@ -136,7 +136,7 @@ fn jumps(sheet: &Sheet, spots: &Spots, columns: &Columns, flow: &mut Flow, repor
 struct Spots {
     steps: HashMap<Spot, usize>,
     transitions: HashMap<Spot, usize>,
-    bars: HashMap<Spot, usize>,
+    bars: HashMap<(Spot, &'static str), usize>,
     names: HashMap<String, usize>,
 }
 
@@ -159,14 +159,29 @@ impl Spots {
                 self.steps.get(&spot).copied().map(Node::Step)
             }
             "transition" => self.transitions.get(&spot).copied().map(Node::Transition),
-            _ => self.bars.get(&spot).copied().map(Node::Bar),
+            _ => {
+                let kind = BARS.iter().find(|word| **word == kind)?;
+                self.bars.get(&(spot, *kind)).copied().map(Node::Bar)
+            }
         }
     }
 }
 
-/// The bars by each cell that they span; a link may end at any column. The first cell of a bar goes
-/// before the others of another one.
-fn bars(sheet: &Sheet) -> HashMap<Spot, usize> {
+/// The kinds of bars.
+const BARS: [&str; 4] = ["altBranch", "altJoint", "parBranch", "parJoint"];
+
+fn kind_of(bar: &BarNode) -> &'static str {
+    match (bar.parallel, bar.opens) {
+        (false, true) => "altBranch",
+        (false, false) => "altJoint",
+        (true, true) => "parBranch",
+        (true, false) => "parJoint",
+    }
+}
+
+/// The bars of each kind by each cell that they span; a link may end at any column. The first cell of
+/// a bar goes before the others of another one.
+fn bars(sheet: &Sheet) -> HashMap<(Spot, &'static str), usize> {
     let numbered = || sheet.bars.iter().enumerate().rev();
     let mut left = MOST_CELLS;
     let mut cells = HashMap::new();
@@ -174,9 +189,9 @@ fn bars(sheet: &Sheet) -> HashMap<Spot, usize> {
         let width = usize::try_from(bar.width).unwrap_or(1).min(left);
         left -= width;
         let columns = (bar.spot.0..).take(width);
-        cells.extend(columns.map(|column| ((column, bar.spot.1), index)));
+        cells.extend(columns.map(|column| (((column, bar.spot.1), kind_of(bar)), index)));
     }
-    cells.extend(numbered().map(|(index, bar)| (bar.spot, index)));
+    cells.extend(numbered().map(|(index, bar)| ((bar.spot, kind_of(bar)), index)));
     cells
 }
 

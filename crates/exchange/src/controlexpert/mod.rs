@@ -1,5 +1,5 @@
 //! Reads files of Control Expert and Unity Pro into a [`Document`]: `.XSF` with one chart, `.XEF`
-//! or the content of `.ZEF` with an application.
+//! or the content of `.ZEF` with an application. Writes a document as `.XSF`.
 //!
 //! # Where this sits
 //!
@@ -8,6 +8,7 @@
 //!              -> declarations (variables, structures) --------------^
 //! ```
 //!
+//! - `write` goes the other way.
 //! - `read` lists the objects of each chart with their places on the grid.
 //! - `grid` finds out which of them touch. The file has no other connections except jumps and drawn
 //!   links.
@@ -20,11 +21,14 @@ mod declarations;
 mod dialect;
 mod grid;
 mod read;
+mod write;
 
 use g7_model::{Document, FileId, Problem, codes, say};
 
 use g7_iec::report::Report;
 use g7_iec::xml;
+
+pub(crate) use write::export;
 
 /// True if the first element is the root of such a file.
 pub(crate) fn fits(_: &str, root: Option<&str>, _: &[u8]) -> bool {

@@ -108,6 +108,8 @@ pub(super) struct Sheet<'a> {
     pub(super) texts: Vec<String>,
     /// The sections of actions and transitions that belong to it.
     pub(super) sections: Vec<Node<'a, 'a>>,
+    /// True if macro-steps are in it: their insides use the sections too.
+    pub(super) shared: bool,
     pub(super) at: Range<usize>,
 }
 
@@ -140,6 +142,8 @@ pub(super) fn sheets<'a>(root: Node<'a, 'a>, report: &mut Report) -> Vec<Sheet<'
         let ident = kid(program, "identProgram");
         let name = ident.and_then(|n| n.attribute("name")).unwrap_or("");
         let mut first = true;
+        let drawn = |n: &Node| kid(*n, "networkSFC").is_some();
+        let shared = kids(program, "chartSource").filter(drawn).nth(1).is_some();
         for chart in kids(program, "chartSource") {
             let Some(network) = kid(chart, "networkSFC") else { continue };
             let own = chart.attribute("name").unwrap_or("");
@@ -147,6 +151,7 @@ pub(super) fn sheets<'a>(root: Node<'a, 'a>, report: &mut Report) -> Vec<Sheet<'
             let mut sheet = sheet(network, report);
             sheet.name = nodes::line(&wanted.replace('`', "'"));
             sheet.inner = !first;
+            sheet.shared = shared;
             if first {
                 let sources = |n: &Node| n.has_tag_name("actionSource") || n.has_tag_name("transitionSource");
                 sheet.sections = program.children().filter(sources).collect();

@@ -9,3 +9,5 @@ mod support;
 mod charts;
 mod corpus;
 mod hostile;
+mod refused;
+mod written;

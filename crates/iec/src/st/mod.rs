@@ -37,7 +37,7 @@ pub(crate) use decl::{Section, Variable, zero};
 pub(crate) use lex::Kind;
 pub(crate) use parse::Parser;
 pub use parse::Places;
-pub(crate) use print::{Types as Known, Writer};
+pub use print::{Types as Known, Writer};
 pub use settle::{conversions, settle};
 pub(crate) use types::Types;
 pub use types::{bits, elementary};

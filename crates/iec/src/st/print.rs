@@ -31,14 +31,14 @@ pub(crate) struct Text {
 
 /// The types of names.
 #[derive(Debug, Default)]
-pub(crate) struct Types<'d> {
+pub struct Types<'d> {
     names: HashMap<&'d str, Type>,
     functions: HashMap<&'d str, Type>,
 }
 
 impl<'d> Types<'d> {
     /// The types of the names of the file and, if given, of a chart.
-    pub(crate) fn new(document: &'d Document, chart: Option<&'d Chart>) -> Types<'d> {
+    pub fn new(document: &'d Document, chart: Option<&'d Chart>) -> Types<'d> {
         let mut types = Types::default();
         for item in &document.items {
             match item {
@@ -56,15 +56,16 @@ impl<'d> Types<'d> {
     }
 
     /// Adds a name of a function, which hides all others.
-    pub(crate) fn own(mut self, name: &'d str, ty: Type) -> Types<'d> {
+    pub fn own(mut self, name: &'d str, ty: Type) -> Types<'d> {
         self.names.insert(name, ty);
         self
     }
 }
 
 /// Prints the texts of one place.
-pub(crate) struct Writer<'a> {
-    pub(crate) types: &'a Types<'a>,
+pub struct Writer<'a> {
+    /// The types of the names in the texts.
+    pub types: &'a Types<'a>,
 }
 
 /// The operator as the standard has it: `·` is an AND.
@@ -118,17 +119,17 @@ impl Text {
 
 impl Writer<'_> {
     /// Prints an expression as a value of a type.
-    pub(crate) fn value(&self, e: &Expr, ty: Type) -> String {
+    pub fn value(&self, e: &Expr, ty: Type) -> String {
         self.text(e).converted(ty).text
     }
 
     /// Prints a condition.
-    pub(crate) fn condition(&self, e: &Expr) -> String {
+    pub fn condition(&self, e: &Expr) -> String {
         self.value(e, Type::Bool)
     }
 
     /// Prints an expression of any type.
-    pub(crate) fn plain(&self, e: &Expr) -> String {
+    pub fn plain(&self, e: &Expr) -> String {
         self.text(e).text
     }
 
@@ -193,7 +194,7 @@ impl Writer<'_> {
             [first, second] => match self.types.names.get(&*first.text) {
                 Some(Type::Fb(kind)) => member(*kind, &second.text).map(|m| m.1),
                 Some(_) => None,
-                None if &*second.text == "X" => Some(Type::Bool),
+                None if second.text.eq_ignore_ascii_case("X") => Some(Type::Bool),
                 None => Some(Type::Time),
             },
             _ => None,
@@ -255,7 +256,7 @@ impl Writer<'_> {
     }
 
     /// Prints the statements of a body.
-    pub(crate) fn body(&self, list: &[Stmt]) -> String {
+    pub fn body(&self, list: &[Stmt]) -> String {
         let mut text = String::new();
         self.statements(list, 0, &mut text);
         text.truncate(text.trim_end().len());
@@ -263,7 +264,7 @@ impl Writer<'_> {
     }
 
     /// Prints statements, each line with its indentation.
-    pub(crate) fn statements(&self, list: &[Stmt], indent: usize, out: &mut String) {
+    pub fn statements(&self, list: &[Stmt], indent: usize, out: &mut String) {
         for stmt in list {
             self.statement(stmt, indent, out);
         }

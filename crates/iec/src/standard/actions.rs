@@ -12,8 +12,8 @@ use g7_model::{
 
 use super::bodies::At;
 use super::lower::{Drive, Form, Formula, Lower};
-use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
+use crate::scopes::{Ref, StepKey, VarKey};
 
 impl<'d> Lower<'d> {
     /// All actions that drive each variable.

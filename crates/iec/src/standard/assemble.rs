@@ -9,8 +9,8 @@ use g7_model::{
 
 use super::bodies::At;
 use super::lower::{DEEPEST, Form, Lower};
-use super::scopes::{Ref, StepKey};
 use crate::nodes;
+use crate::scopes::{Ref, StepKey};
 
 impl<'d> Lower<'d> {
     /// The whole document.

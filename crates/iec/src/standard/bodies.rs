@@ -7,8 +7,8 @@ use g7_model::{
 };
 
 use super::lower::Lower;
-use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
+use crate::scopes::{Ref, StepKey, VarKey};
 
 /// The longest chain of constants that refer to constants.
 pub(super) const MOST_CONSTANTS: usize = 20;

@@ -13,8 +13,8 @@ use g7_model::{
 
 use super::bodies::{At, MOST_CONSTANTS};
 use super::lower::{Form, Lower};
-use super::scopes::{Ref, StepKey, VarKey};
 use crate::nodes;
+use crate::scopes::{Ref, StepKey, VarKey};
 
 /// The most that a step time counts, which is an INT, and the most scans that are counted for its seconds.
 const MOST: [i128; 2] = [32_767, 2_147_483_647];

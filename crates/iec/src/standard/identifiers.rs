@@ -5,8 +5,9 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::{Name, Span};
 
-use super::scopes::{Scopes, StepKey};
 use crate::nodes::Taken;
+use crate::scopes::{Scopes, StepKey};
+use crate::words::identifier;
 
 /// Members of steps, and of the blocks that actions are written with. In the code that matiec makes, each step
 /// is a macro of C, which would stand for a member of its name as well.
@@ -207,46 +208,5 @@ impl Names {
     pub(super) fn inner(&self, name: &str) -> String {
         let text = identifier(name);
         if self.reserved.contains(text.to_ascii_uppercase().as_str()) { format!("{text}_2") } else { text }
-    }
-}
-
-/// An identifier of letters, digits and single `_` that begins with a letter or `_`.
-fn identifier(text: &str) -> String {
-    let mut out = String::new();
-    for c in text.chars() {
-        match fold(c) {
-            "" if c.is_ascii_alphanumeric() => out.push(c),
-            "" if !out.ends_with('_') => out.push('_'),
-            "" => {}
-            folded => out.push_str(folded),
-        }
-    }
-    let out = if out.len() > 1 { out.trim_end_matches('_').to_string() } else { out };
-    match out.chars().next() {
-        Some(c) if c.is_ascii_digit() => format!("N{out}"),
-        Some('_') | None => format!("v{out}"),
-        Some(_) => out,
-    }
-}
-
-/// The usual spelling of letters outside ASCII.
-fn fold(c: char) -> &'static str {
-    match c {
-        'ä' | 'å' | 'á' | 'à' | 'â' => "a",
-        'Ä' | 'Å' | 'Á' | 'À' => "A",
-        'ö' | 'ó' | 'ô' | 'ø' => "o",
-        'Ö' | 'Ø' => "O",
-        'ü' | 'ú' | 'ù' | 'û' => "u",
-        'Ü' => "U",
-        'é' | 'è' | 'ê' | 'ë' => "e",
-        'É' | 'È' => "E",
-        'í' | 'ì' | 'î' | 'ï' => "i",
-        'ç' => "c",
-        'ñ' => "n",
-        'ß' => "ss",
-        'æ' => "ae",
-        '+' => "plus",
-        '-' => "minus",
-        _ => "",
     }
 }

@@ -2,14 +2,14 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use g7_model::codes;
 use g7_model::{
     Action, ActionKind, Chart, ChartItem, ChartKind, Document, Expr, Item, Nanos, Problem, ProfileName,
-    Qualifier, Said, Span, StepKind, Stmt, Switch, Target, VarDecl, say,
+    Qualifier, Span, StepKind, Stmt, Switch, Target, VarDecl, say,
 };
 
 use super::identifiers::Names;
-use super::scopes::{Ref, Scopes, StepKey, VarKey};
+use crate::report::renamed;
+use crate::scopes::{Ref, Scopes, StepKey, VarKey};
 
 /// The deepest nesting of macro-steps.
 pub(super) const DEEPEST: usize = 20;
@@ -328,20 +328,7 @@ impl<'d> Lower<'d> {
     /// The problems in the order of the document.
     pub(super) fn finish(self) -> Vec<Problem> {
         let mut problems = self.problems;
-        if let Some((at, from, to)) = self.names.renamed.first() {
-            let more = self.names.renamed.len() - 1;
-            let tail =
-                if more > 0 { say!("; {more} more names are changed as well") } else { Said::default() };
-            let word = crate::words::everywhere().any(|w| w.eq_ignore_ascii_case(from));
-            let why = if word { say!(", because it is a word of IEC 61131-3") } else { Said::default() };
-            let what = say!("`{from}` is called `{to}` there{why}{tail}");
-            let mut problem = Problem::new(&codes::RENAMED, *at, what);
-            // Places beyond these would be pages of output; the names stand in the file that is written.
-            for (at, _, to) in self.names.renamed.iter().skip(1).take(8) {
-                problem.related.push((*at, say!("called `{to}`")));
-            }
-            problems.push(problem);
-        }
+        problems.extend(renamed(&self.names.renamed));
         problems.sort_by_key(|p| (p.at.start, p.at.end));
         // A problem of a part that two programs share is reported once.
         problems.dedup_by(|a, b| a.code == b.code && a.at == b.at && a.what == b.what);

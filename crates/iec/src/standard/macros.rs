@@ -6,8 +6,8 @@ use g7_model::{Action, ActionKind, Body, Chart, ChartItem, Name, NamedAction, St
 
 use super::bodies::At;
 use super::lower::{DEEPEST, Lower};
-use super::scopes::StepKey;
 use crate::nodes;
+use crate::scopes::StepKey;
 
 impl<'d> Lower<'d> {
     /// Notes the actions of a macro-step whose expansion is written in line: each step of the expansion has

@@ -25,7 +25,6 @@ mod identifiers;
 mod idle;
 mod lower;
 mod macros;
-mod scopes;
 mod watch;
 
 use std::collections::HashSet;

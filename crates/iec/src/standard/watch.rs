@@ -6,8 +6,8 @@ use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Said, Section, Span, Type
 
 use super::bodies::At;
 use super::lower::{Lower, Watch, WatchKind};
-use super::scopes::{Ref, StepKey};
 use crate::nodes;
+use crate::scopes::{Ref, StepKey};
 
 impl<'d> Lower<'d> {
     /// `↑e`, `↓e`: the blocks R_TRIG and F_TRIG. In the first scan there is no edge.

@@ -2,6 +2,7 @@
 //! elements.
 
 pub mod attr;
+pub mod controlexpert;
 pub mod element;
 mod guard;
 

@@ -1,5 +1,6 @@
 //! Control Expert and Unity Pro: a section in Structured Text with its variables (`.XST`).
 
+use g7_iec::xml::controlexpert;
 use g7_iec::xml::element::Element;
 use g7_model::{Problem, Said, Span, say};
 
@@ -18,19 +19,11 @@ pub(crate) fn print(e: &Block, place: Span) -> Result<String, Vec<Problem>> {
     let variables: Vec<Element> = own.variables.iter().map(|v| variable(v, &mut refused)).collect();
     refused.problems(place)?;
     let notes: String = own.notes.iter().map(|note| format!("(* {} *)\n", st::plain(note))).collect();
-    let header = Element::new("fileHeader").with("company", "G7").with("product", "Control Expert");
-    let header = header.with("content", "Structured source file").with("DTDVersion", "41");
     let section =
         Element::new("identProgram").with("name", &e.name).with("type", "section").with("task", "MAST");
     let source = Element::with_text("STSource", &(notes + &st::body(&own, "FAULT")));
-    let root = Element::new("STExchangeFile")
-        .child(header)
-        .child(Element::new("contentHeader").with("name", &e.name).with("version", "0.0.000"))
-        .child(Element::new("program").child(section).child(source))
-        .child(Element::new("dataBlock").children(variables));
-    let mut text = "<?xml version=\"1.0\" encoding=\"UTF-8\" standalone=\"yes\"?>\n".to_owned();
-    root.print(0, &mut text);
-    Ok(text)
+    let program = Element::new("program").child(section).child(source);
+    Ok(controlexpert::file("STExchangeFile", "Structured source file", &e.name, program, variables))
 }
 
 fn type_of(ty: &str) -> Option<&'static str> {

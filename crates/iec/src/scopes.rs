@@ -8,25 +8,29 @@ use g7_model::{
 };
 
 /// A step: the index of its chart and its index among the steps there.
-pub(super) type StepKey = (usize, usize);
+pub type StepKey = (usize, usize);
 
 /// The meaning of a path.
 #[derive(Clone, Copy)]
-pub(super) enum Ref<'d> {
+pub enum Ref<'d> {
     /// A variable of a chart or of the file.
     Var(VarKey<'d>),
     /// A member of a function block.
     Member(VarKey<'d>, &'static str),
+    /// The activity of a step.
     Active(StepKey),
+    /// The time of a step.
     Time(StepKey),
     /// The time of a step in seconds, a REAL, where step times count scans.
     Seconds(StepKey),
+    /// A transition section, with its chart.
     Section(Option<usize>, &'d Section),
+    /// A named action, with its chart.
     Action(Option<usize>, &'d NamedAction),
 }
 
 /// A variable: the chart that declares it (None: the file), and its name.
-pub(super) type VarKey<'d> = (Option<usize>, &'d str);
+pub type VarKey<'d> = (Option<usize>, &'d str);
 
 /// The names of one chart, or of the file.
 #[derive(Default)]
@@ -37,8 +41,9 @@ struct Table<'d> {
 }
 
 /// All names of a document.
-pub(super) struct Scopes<'d> {
-    pub(super) charts: Vec<&'d Chart>,
+pub struct Scopes<'d> {
+    /// The charts, expansions and tasks, by number.
+    pub charts: Vec<&'d Chart>,
     steps: Vec<Vec<&'d Step>>,
     places: Vec<HashMap<&'d str, usize>>,
     /// The steps with a name, in all charts.
@@ -50,7 +55,8 @@ pub(super) struct Scopes<'d> {
 }
 
 impl<'d> Scopes<'d> {
-    pub(super) fn new(document: &'d Document) -> Scopes<'d> {
+    /// The names of a document.
+    pub fn new(document: &'d Document) -> Scopes<'d> {
         let charts: Vec<&Chart> = document.charts().collect();
         let mut scopes = Scopes {
             steps: charts.iter().map(|c| c.steps().collect()).collect(),
@@ -107,28 +113,34 @@ impl<'d> Scopes<'d> {
         }
     }
 
-    pub(super) fn chart(&self, number: usize) -> Option<&'d Chart> {
+    /// A chart by its number.
+    pub fn chart(&self, number: usize) -> Option<&'d Chart> {
         self.charts.get(number).copied()
     }
 
-    pub(super) fn chart_named(&self, name: &str) -> Option<usize> {
+    /// The number of the chart with a name.
+    pub fn chart_named(&self, name: &str) -> Option<usize> {
         self.numbers.get(name).copied()
     }
 
-    pub(super) fn step(&self, key: StepKey) -> Option<&'d Step> {
+    /// A step.
+    pub fn step(&self, key: StepKey) -> Option<&'d Step> {
         self.steps.get(key.0)?.get(key.1).copied()
     }
 
-    pub(super) fn step_in(&self, chart: usize, name: &str) -> Option<StepKey> {
+    /// The step of a chart with a name.
+    pub fn step_in(&self, chart: usize, name: &str) -> Option<StepKey> {
         Some((chart, *self.places.get(chart)?.get(name)?))
     }
 
-    pub(super) fn steps_of(&self, chart: usize) -> impl Iterator<Item = (StepKey, &'d Step)> + use<'d> {
+    /// The steps of a chart, in the order of the text.
+    pub fn steps_of(&self, chart: usize) -> impl Iterator<Item = (StepKey, &'d Step)> + use<'d> {
         let steps = self.steps.get(chart).cloned().unwrap_or_default();
         steps.into_iter().enumerate().map(move |(i, s)| ((chart, i), s))
     }
 
-    pub(super) fn decl(&self, key: VarKey) -> Option<&'d VarDecl> {
+    /// The declaration of a variable.
+    pub fn decl(&self, key: VarKey) -> Option<&'d VarDecl> {
         let table = match key.0 {
             Some(c) => self.tables.get(c)?,
             None => &self.file,
@@ -137,12 +149,12 @@ impl<'d> Scopes<'d> {
     }
 
     /// The variable at an address.
-    pub(super) fn at(&self, address: &str) -> Option<VarKey<'d>> {
+    pub fn at(&self, address: &str) -> Option<VarKey<'d>> {
         self.addresses.get(&address_of(address)).copied()
     }
 
     /// The chart that is the expansion of a macro-step.
-    pub(super) fn expansion(&self, key: StepKey) -> Option<usize> {
+    pub fn expansion(&self, key: StepKey) -> Option<usize> {
         match &self.step(key)?.kind {
             StepKind::Macro(name) => self.chart_named(&name.text),
             _ => None,
@@ -150,7 +162,7 @@ impl<'d> Scopes<'d> {
     }
 
     /// The meaning of a path in a chart or in the file.
-    pub(super) fn refer(&self, chart: Option<usize>, names: &[Name]) -> Option<Ref<'d>> {
+    pub fn refer(&self, chart: Option<usize>, names: &[Name]) -> Option<Ref<'d>> {
         let (first, rest) = names.split_first()?;
         if rest.is_empty() {
             let own = chart.and_then(|c| self.entity(Some(c), &first.text));
@@ -255,7 +267,7 @@ impl<'d> Scopes<'d> {
 
     /// `X12`, `XM3` as a direct name: a step of the first chart. `X3.12`, `X3.IN`, `X3.OUT`: one of the expansion of
     /// a macro-step.
-    pub(super) fn direct_step(&self, text: &str) -> Option<StepKey> {
+    pub fn direct_step(&self, text: &str) -> Option<StepKey> {
         let first = self.charts.iter().position(|c| c.kind == ChartKind::Chart)?;
         let name = text.strip_prefix('X')?;
         let macro_step = |number: &str| {
