@@ -47,8 +47,11 @@ fn one_object_in_each_cell(name: &str, text: &str) {
     }
 }
 
+/// The steps before and behind a transition, and its rank among those behind the same steps.
+type Ends = (Vec<usize>, Vec<usize>, usize);
+
 /// Transitions without regard to their order and that of their ends, with the rank among those behind one step.
-fn links(document: &Document) -> Vec<BTreeSet<(Vec<usize>, Vec<usize>, usize)>> {
+fn links(document: &Document) -> Vec<BTreeSet<Ends>> {
     let of_chart = |steps: Vec<&str>, transitions: Vec<&Transition>| {
         let numbers = |names: &[Name]| {
             let mut list: Vec<usize> =

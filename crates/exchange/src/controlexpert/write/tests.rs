@@ -232,8 +232,11 @@ fn read_back(grid: &Grid) -> Vec<(BTreeSet<usize>, BTreeSet<usize>)> {
     ends.into_iter().map(|e| (set(e.from), set(e.to))).collect()
 }
 
+/// Transitions, each with the steps before and behind it.
+type Arcs = Vec<(Vec<usize>, Vec<usize>)>;
+
 /// Transitions at random between a few steps.
-fn charts() -> impl Strategy<Value = (usize, Vec<(Vec<usize>, Vec<usize>)>)> {
+fn charts() -> impl Strategy<Value = (usize, Arcs)> {
     (2usize..14).prop_flat_map(|steps| {
         let some = || prop_oneof![5 => proptest::collection::btree_set(0..steps, 1), 1 => proptest::collection::btree_set(0..steps, 2..4)];
         let list = |set: BTreeSet<usize>| set.into_iter().collect::<Vec<_>>();
@@ -243,10 +246,7 @@ fn charts() -> impl Strategy<Value = (usize, Vec<(Vec<usize>, Vec<usize>)>)> {
 }
 
 /// The chart without the transitions that have no place.
-fn drawable(
-    steps: usize,
-    mut transitions: Vec<(Vec<usize>, Vec<usize>)>,
-) -> (Plan, Vec<(Vec<usize>, Vec<usize>)>) {
+fn drawable(steps: usize, mut transitions: Arcs) -> (Plan, Arcs) {
     loop {
         let list: Vec<(&[usize], &[usize])> = transitions.iter().map(|(a, b)| (&**a, &**b)).collect();
         match plan(steps, &list) {
