@@ -408,6 +408,52 @@ export type Halted = { what: string; ids: Array<string>; from?: number; to?: num
 /** An explanation of a piece of the text. */
 export type Hover = { from: number; to: number; markdown: string };
 
+/** A symbol that is drawn as another one. */
+export type Alike = {
+  /** The number of that one in the other drawing. */
+  as: number;
+  /** How far from it this one stands. */
+  by: [number, number];
+  id: string;
+  part: Part;
+  area: Box;
+  from: number;
+  to: number;
+  square?: Box;
+  bar?: Box;
+  text?: Box;
+  /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
+  at?: [number, number];
+  name?: string;
+  label?: string;
+  comment?: string;
+  /** The receptivity or the action as typed. */
+  source?: string;
+  priority?: number;
+  /** The names of the preceding and the succeeding steps of a transition. */
+  steps?: [Array<string>, Array<string>];
+  step?: StepKind;
+  macro?: string;
+  encloses?: Array<string>;
+  initial?: boolean;
+  ends?: [string, string];
+};
+
+/** Symbols that follow one another in the other drawing too, and are the same there. */
+export type Kept = {
+  /** The number of the first one in the other drawing. */
+  as: number;
+  count: number;
+  /** How far they have moved. */
+  by: [number, number];
+  /** By how many code units their places in the text have moved. */
+  along: number;
+  /** Their ids, if these contain the number of a transition that has another one now. */
+  ids?: Array<string>;
+  /** With `ids`: the ends of those that have ends. */
+  ends?: Array<[string, string]>;
+};
+
 /** A symbol with its drawing. */
 export type Item = {
   /** The SVG of the symbol. */
@@ -610,8 +656,6 @@ export type Redrawn = {
   /** The number of the drawing to which `items` refer. */
   since?: number;
   items: Array<Sent>;
-  /** The first and the last place in the text of each symbol that is the same. */
-  places?: Array<number>;
   chart: string;
   kind: ChartKind;
   /** True if the drawing shows an earlier text, because the present one has syntax errors. */
@@ -634,35 +678,7 @@ export type RunStep = {
 /** A result of a search. */
 export type SearchHit = { from: number; to: number; line: number; text: string; id?: string; chart?: string };
 
-export type Sent =
-  | number
-  | {
-    as: number;
-    id: string;
-    part: Part;
-    area: Box;
-    from: number;
-    to: number;
-    square?: Box;
-    bar?: Box;
-    text?: Box;
-    /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
-    at?: [number, number];
-    name?: string;
-    label?: string;
-    comment?: string;
-    /** The receptivity or the action as typed. */
-    source?: string;
-    priority?: number;
-    /** The names of the preceding and the succeeding steps of a transition. */
-    steps?: [Array<string>, Array<string>];
-    step?: StepKind;
-    macro?: string;
-    encloses?: Array<string>;
-    initial?: boolean;
-    ends?: [string, string];
-  }
-  | Item;
+export type Sent = Kept | Alike | Item;
 
 /** How grave a problem is. */
 export type Severity = 'error' | 'warning';
