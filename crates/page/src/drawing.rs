@@ -191,8 +191,8 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, String> {
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart =
         readable.document.charts().find(find).ok_or_else(|| format!("there is no chart `{}`", wish.chart))?;
-    let drawing = g7_draw::draw(&readable.document, chart, &options);
-    let names = Names::new(&readable, chart);
+    let drawing = g7_draw::draw(readable.document, chart, &options);
+    let names = Names::new(readable, chart);
     Ok(Drawn {
         chart: wish.chart.clone(),
         kind: sort(chart.kind),
@@ -225,7 +225,7 @@ pub(crate) fn opens(step: &Step) -> impl Iterator<Item = &str> {
 }
 
 struct Names<'a> {
-    readable: &'a Readable,
+    readable: Readable<'a>,
     chart: &'a Chart,
     steps: Vec<&'a Step>,
     transitions: Vec<&'a Transition>,
@@ -235,13 +235,13 @@ struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    fn new(readable: &'a Readable, chart: &'a Chart) -> Names<'a> {
+    fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
         Names {
             readable,
             chart,
             steps: chart.steps().collect(),
             transitions: chart.transitions().collect(),
-            comments: g7_draw::comments(&readable.document, chart).map(|(text, _)| text).collect(),
+            comments: g7_draw::comments(readable.document, chart).map(|(text, _)| text).collect(),
             seen: Default::default(),
         }
     }
