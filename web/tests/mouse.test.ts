@@ -46,8 +46,21 @@ after(async () => {
 const symbols = (page: Page) => page.locator('.sheet [data-id]').evaluateAll((all) => all.map((e) => (e as HTMLElement).dataset.id ?? ''));
 
 /** The places of the squares of some steps in the drawing. */
+/** The corners of steps in the drawing. */
 const corners = (page: Page, ids: string[]) =>
-  Promise.all(ids.map((id) => item(page, id).locator('.g7-box').first().evaluate((e) => [Number(e.getAttribute('x')), Number(e.getAttribute('y'))] as const)));
+  Promise.all(
+    ids.map((id) =>
+      item(page, id)
+        .locator('.g7-box')
+        .first()
+        .evaluate((e) => {
+          // A symbol that was moved keeps its attributes, and its block is moved.
+          const [drawing, box] = [e.closest<SVGGElement>('.still > g')?.getCTM(), (e as SVGRectElement).getCTM()];
+          const { x, y } = new DOMPoint(Number(e.getAttribute('x')), Number(e.getAttribute('y'))).matrixTransform(drawing?.inverse().multiply(box ?? undefined));
+          return [Math.round(x), Math.round(y)] as const;
+        }),
+    ),
+  );
 
 async function end(page: Page & { errors: string[] }): Promise<void> {
   assert.deepEqual(page.errors, []);

@@ -285,6 +285,6 @@ pub(crate) struct Inked {
 impl From<Inked> for Item {
     fn from(inked: Inked) -> Item {
         let Inked { part, picture, at } = inked;
-        Item { part, area: picture.area().unwrap_or_default(), svg: picture.svg(), far: picture.far(), at }
+        Item { part, area: picture.area().unwrap_or_default(), picture, at }
     }
 }

@@ -1,11 +1,11 @@
-//! The drawing of a chart: a list of items, each with its bounding box and its SVG.
+//! The drawing of a chart: a list of items, each with its bounding box and its strokes.
 //!
-//! The page selects the items in view by their boxes and shows their fragments, so it needs no
+//! The page selects the items in view by their boxes and shows the SVG of their strokes, so it needs no
 //! knowledge of symbols. `svg` prints all items.
 
 use g7_model::Span;
 
-use crate::{End, Point, Rect};
+use crate::{End, Picture, Point, Rect};
 
 /// The drawing of one chart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -25,10 +25,8 @@ pub struct Item {
     pub part: Part,
     /// The bounding box of the item, texts included.
     pub area: Rect,
-    /// The SVG of the symbol, in coordinates of the drawing; it has classes, no colours.
-    pub svg: String,
-    /// Path data for zoomed-out views: lines without texts; may be empty.
-    pub far: String,
+    /// The strokes of the symbol.
+    pub picture: Picture,
     /// The place of this part in the text of the file; empty if it has none.
     pub at: Span,
 }

@@ -15,6 +15,14 @@ pub struct Point {
     pub y: i32,
 }
 
+impl Point {
+    /// The vector that leads here from another point.
+    #[must_use]
+    pub fn minus(self, other: Point) -> Point {
+        Point { x: self.x - other.x, y: self.y - other.y }
+    }
+}
+
 /// An axis-parallel box.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Rect {
@@ -47,6 +55,11 @@ impl Rect {
     /// The box that an extent covers round an anchor.
     pub fn around(at: Point, e: Extent) -> Rect {
         Rect { x: at.x - e.left, y: at.y - e.up, w: e.left + e.right, h: e.up + e.down }
+    }
+
+    /// True if this box is another one moved by a vector.
+    pub fn is_moved_from(&self, other: &Rect, by: Point) -> bool {
+        (self.x - other.x, self.y - other.y, self.w, self.h) == (by.x, by.y, other.w, other.h)
     }
 
     /// True if the interiors of the two boxes have a point in common.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use g7_model::{Document, FileId, Severity, Span};
 
 use crate::text::width;
-use crate::{Drawing, End, Item, Look, Options, Part, Rect, draw};
+use crate::{Drawing, End, Item, Look, Options, Part, Picture, Rect, draw};
 
 /// The boxes, texts and lines that an item covers.
 #[derive(Default)]
@@ -58,7 +58,7 @@ fn pieces(d: &str) -> Vec<Rect> {
 
 fn seen(item: &Item) -> Seen {
     let mut seen = Seen::default();
-    for tag in item.svg.split('<').skip(1) {
+    for tag in item.picture.svg().split('<').skip(1) {
         let rect = || {
             let of = |name| number(attribute(tag, name));
             Rect { x: of("x"), y: of("y"), w: of("width"), h: of("height") }
@@ -229,13 +229,13 @@ fn what_lies_over_something_is_found() {
     drawing.items.extend(twice);
     let through =
         drawing.items.iter().find(|i| matches!(i.part, Part::Step { step: 0, .. })).expect("step 1").area;
-    let (y, right) = (f64::from(through.y + 100) / 10.0, f64::from(through.x + through.w) / 10.0);
-    let svg = format!("<path class=\"g7-link\" d=\"M-900 {y}H{right}\"/>");
+    let (y, right) = (through.y + 100, through.x + through.w);
+    let mut picture = Picture::default();
+    picture.line("g7-link", &[(-9000, y), (right, y)]);
     let link = Item {
         part: Part::Link { link: 0, from: End::Step(0), to: End::Transition(0) },
-        svg,
+        picture,
         area: through,
-        far: String::new(),
         at: Span::default(),
     };
     drawing.items.push(link);

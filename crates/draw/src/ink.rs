@@ -1,5 +1,6 @@
 //! The strokes of a symbol: lines, boxes and texts, each with a CSS class. A symbol is built round
-//! its anchor, moved to its place, and printed last.
+//! its anchor, moved to its place, and printed last, if at all: the page keeps what it has of a symbol that
+//! only moves.
 
 use crate::text::{Line, clean, known, width};
 use crate::{Point, Rect};
@@ -19,9 +20,9 @@ pub(crate) enum Ink {
     Text(&'static str, Point, i32, String),
 }
 
-/// A symbol or a part of one.
+/// A symbol or a part of one, as strokes at their places.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Picture {
+pub struct Picture {
     /// The strokes, in the order of painting.
     pub(crate) ink: Vec<Ink>,
     /// The title of the SVG group, for screen readers and tooltips: the text in full.
@@ -115,8 +116,17 @@ impl Picture {
         self
     }
 
-    /// The SVG of the picture; the title, if there is one, comes first.
-    pub(crate) fn svg(&self) -> String {
+    /// How far this picture is moved from another one that looks the same; `None` if they look different.
+    pub fn moved_from(&self, other: &Picture) -> Option<Point> {
+        let pairs = || self.ink.iter().zip(&other.ink);
+        let by = pairs().next().map_or(Point::default(), |(a, b)| a.start().minus(b.start()));
+        let alike = self.ink.len() == other.ink.len() && self.title == other.title;
+        (alike && pairs().all(|(a, b)| a.is_moved_from(b, by))).then_some(by)
+    }
+
+    /// The SVG of the picture, in coordinates of the drawing; it has classes, no colours. The title, if there
+    /// is one, comes first.
+    pub fn svg(&self) -> String {
         let mut out = String::new();
         if let Some(title) = &self.title {
             out.push_str("<title>");
@@ -127,8 +137,8 @@ impl Picture {
         out
     }
 
-    /// Path data of the lines and boxes without texts, for zoomed-out views.
-    pub(crate) fn far(&self) -> String {
+    /// Path data of the lines and boxes without texts, for zoomed-out views; may be empty.
+    pub fn far(&self) -> String {
         let mut out = String::new();
         for ink in &self.ink {
             match ink {
@@ -168,6 +178,31 @@ impl Ink {
                 let (up, down) = (size * ABOVE / 1000, sink(*size));
                 Rect { x: at.x, y: at.y - up, w: width(text, *size), h: up + down }
             }
+        }
+    }
+
+    /// The point by which places of two strokes are compared.
+    fn start(&self) -> Point {
+        match self {
+            Ink::Line(_, points) | Ink::Shape(_, points) => points.first().copied().unwrap_or_default(),
+            Ink::Rect(_, r) => Point { x: r.x, y: r.y },
+            Ink::Circle(_, at, _) | Ink::Text(_, at, ..) => *at,
+        }
+    }
+
+    /// True if this stroke is another one moved by a vector.
+    fn is_moved_from(&self, other: &Ink, by: Point) -> bool {
+        let moved = |a: &Point, b: &Point| a.minus(*b) == by;
+        match (self, other) {
+            (Ink::Line(class, a), Ink::Line(other, b)) | (Ink::Shape(class, a), Ink::Shape(other, b)) => {
+                class == other && a.len() == b.len() && a.iter().zip(b).all(|(a, b)| moved(a, b))
+            }
+            (Ink::Rect(class, a), Ink::Rect(other, b)) => class == other && a.is_moved_from(b, by),
+            (Ink::Circle(class, a, r), Ink::Circle(other, b, s)) => (class, r) == (other, s) && moved(a, b),
+            (Ink::Text(class, a, size, text), Ink::Text(other, b, of, words)) => {
+                (class, size, text) == (other, of, words) && moved(a, b)
+            }
+            _ => false,
         }
     }
 

@@ -36,6 +36,7 @@ pub use draw::{comments, draw, draw_all, measure, placed};
 pub use drawing::{Drawing, Item, Part};
 pub use drawio::{drawio, shapes};
 pub use geometry::{Extent, Point, Rect, U};
+pub use ink::Picture;
 pub use layout::layout;
 pub use options::{Look, Options};
 pub use placement::{Bar, Connector, End, Link, Placement, Sizes};

@@ -233,7 +233,7 @@ fn body(out: &mut String, drawing: &Drawing) {
             Part::Comment { .. } => "comment",
             Part::Text => "text",
         };
-        let _ = write!(out, "<g data-part=\"{part}\">{}</g>", item.svg);
+        let _ = write!(out, "<g data-part=\"{part}\">{}</g>", item.picture.svg());
     }
 }
 

@@ -42,7 +42,8 @@ fn action(declaration: &str, look: Look) -> Item {
 }
 
 fn texts(item: &Item) -> Vec<String> {
-    let pieces = item.svg.split("<text").skip(1).filter_map(|p| p.split_once('>')?.1.split_once("</text>"));
+    let svg = item.picture.svg();
+    let pieces = svg.split("<text").skip(1).filter_map(|p| p.split_once('>')?.1.split_once("</text>"));
     let plain =
         |t: &str| t.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&");
     pieces.map(|(t, _)| plain(t)).collect()
@@ -56,7 +57,8 @@ fn set(receptivity: &str) -> String {
 /// Left end, right end and height of each overline, in px.
 fn overlines(item: &Item) -> Vec<(f64, f64, f64)> {
     let number = |t: &str| t.parse::<f64>().expect("a number");
-    let lines = item.svg.split("g7-over\" d=\"M").skip(1).filter_map(|p| p.split('"').next());
+    let svg = item.picture.svg();
+    let lines = svg.split("g7-over\" d=\"M").skip(1).filter_map(|p| p.split('"').next());
     lines
         .map(|d| {
             let (start, right) = d.split_once('H').expect("a horizontal line");
@@ -67,14 +69,14 @@ fn overlines(item: &Item) -> Vec<(f64, f64, f64)> {
 }
 
 fn count(item: &Item, what: &str) -> usize {
-    item.svg.matches(what).count()
+    item.picture.svg().matches(what).count()
 }
 
 #[test]
 fn the_complement_of_a_product_is_one_line_over_all_of_it() {
     let item = transition("not (a and b)");
     assert_eq!(texts(&item), ["a · b"]);
-    let [(from, to, y)] = overlines(&item)[..] else { panic!("{}", item.svg) };
+    let [(from, to, y)] = overlines(&item)[..] else { panic!("{}", item.picture.svg()) };
     let Part::Transition { text, .. } = item.part else { panic!("no transition") };
     let (left, right) = (f64::from(text.x) / 10.0, f64::from(text.x + text.w) / 10.0);
     assert!((from - left).abs() < 1.0 && (to - right).abs() < 1.0, "{from}..{to} over {left}..{right}");
@@ -85,7 +87,7 @@ fn the_complement_of_a_product_is_one_line_over_all_of_it() {
 fn a_complement_covers_only_what_is_complemented() {
     let item = transition("a · not b");
     let Part::Transition { text, .. } = item.part else { panic!("no transition") };
-    let [(from, to, _)] = overlines(&item)[..] else { panic!("{}", item.svg) };
+    let [(from, to, _)] = overlines(&item)[..] else { panic!("{}", item.picture.svg()) };
     let (left, right) = (f64::from(text.x) / 10.0, f64::from(text.x + text.w) / 10.0);
     assert!(from > left + 8.0 && (to - right).abs() < 1.0, "only b: {from}..{to} in {left}..{right}");
 }
@@ -199,7 +201,8 @@ fn actions_show_when_they_act() {
 fn stored_actions_have_an_arrow_up_or_down() {
     let tip = |a: &str| {
         let item = action(a, Look::Iec60848);
-        let d = item.svg.split("g7-mark\" d=\"M").nth(1).and_then(|p| p.split(['L', 'H']).next());
+        let svg = item.picture.svg();
+        let d = svg.split("g7-mark\" d=\"M").nth(1).and_then(|p| p.split(['L', 'H']).next());
         let y: f64 = d.and_then(|d| d.split(' ').nth(1)).and_then(|y| y.parse().ok()).expect("an arrow");
         y - f64::from(item.area.y + item.area.h / 2) / 10.0
     };
@@ -235,7 +238,8 @@ fn a_long_body_is_cut_and_told_in_full_by_its_title() {
     let item = action(&format!("P1 {{ {body} }}"), Look::Iec60848);
     let shown = texts(&item);
     assert!(shown.len() <= 6 && shown.last().is_some_and(|l| l == "…"), "{shown:?}");
-    let title = item.svg.split("<title>").nth(1).and_then(|t| t.split("</title>").next()).expect("a title");
+    let svg = item.picture.svg();
+    let title = svg.split("<title>").nth(1).and_then(|t| t.split("</title>").next()).expect("a title");
     assert!(title.contains("v19 := 19"), "{title}");
 }
 

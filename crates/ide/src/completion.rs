@@ -54,7 +54,7 @@ pub fn complete(file: &File, at: usize) -> Completion {
     let before = if typed.is_some() { before.split_last().map_or(&[][..], |(_, b)| b) } else { &before[..] };
     let readable = file.drawn();
     let place =
-        Place { text, before, document: &readable.document, at: u32::try_from(byte).unwrap_or(u32::MAX) };
+        Place { text, before, document: readable.document, at: u32::try_from(byte).unwrap_or(u32::MAX) };
     let mut items = place.choices();
     let prefix = text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
     items.retain(|c| c.label.to_lowercase().contains(&prefix));

@@ -1,6 +1,6 @@
 //! A file that is open in an editor.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use g7_edit::{Edit, History, Splice, spliced};
 use g7_model::{Document, FileId, Item, Language, Problem, Said, Severity, Span, say};
@@ -14,8 +14,8 @@ pub struct File {
     pub source: Source,
     /// The places of the text in other units.
     pub positions: Arc<Positions>,
-    /// The latest document without syntax errors.
-    readable: Option<Readable>,
+    /// The latest text without syntax errors, if the present one has some.
+    clean: Option<Clean>,
     /// All problems, in the order of the text.
     pub problems: Vec<Problem>,
     /// The number of changes since the file was opened.
@@ -59,7 +59,7 @@ impl File {
     fn of(source: Source, imported: bool) -> File {
         let mut file = File {
             positions: Arc::new(Positions::new(&source.text)),
-            readable: None,
+            clean: None,
             problems: Vec::new(),
             version: 0,
             imported,
@@ -82,6 +82,7 @@ impl File {
         self.recorded(&edit.splices, false)?;
         match edit.read.take() {
             Some(read) => {
+                self.keep_clean();
                 self.source.put_tree(*read);
                 self.changed();
                 Ok(())
@@ -130,12 +131,22 @@ impl File {
     /// Changes the text. The form was decided when the file was opened: an imported file keeps its name,
     /// but its text is .g7 text now.
     fn splice(&mut self, splices: &[Splice]) -> Result<(), Said> {
+        self.keep_clean();
         let edits: Vec<_> = splices.iter().map(|s| (s.start..s.end, s.insert.as_str())).collect();
         if !self.source.change(&edits) {
             return Err(say!("these places are none of the text"));
         }
         self.changed();
         Ok(())
+    }
+
+    /// Keeps the present text, if it has no syntax errors, because a change may bring some.
+    fn keep_clean(&mut self) {
+        if self.is_clean() {
+            let text = self.source.text.as_str().into();
+            self.clean =
+                Some(Clean { text, positions: Arc::clone(&self.positions), document: OnceLock::new() });
+        }
     }
 
     fn changed(&mut self) {
@@ -167,21 +178,18 @@ impl File {
         !self.source.has_errors()
     }
 
-    /// Finds the problems, and keeps the document if it has no syntax errors.
+    /// Finds the problems.
     fn judge(&mut self) {
         self.problems = match g7_rig::testing::problems(&self.source, None) {
             Ok(problems) => problems,
             Err(_) => self.source.problems.clone(),
         };
         self.problems.sort_by_key(|p| (p.at, p.severity() == Severity::Warning));
-        if self.is_clean() {
-            self.readable = Some(self.present(false));
-        }
     }
 
     /// The document to draw a chart from: the present one if the chart and its layout can be read in it,
     /// whatever stands in the rest of the file.
-    pub fn drawn_chart(&self, name: &str) -> Readable {
+    pub fn drawn_chart(&self, name: &str) -> Readable<'_> {
         let parts = self.source.document.items.iter().filter_map(|item| match item {
             Item::Chart(c) if *c.name.text == *name => Some((true, c.at.0)),
             Item::Layout(l) if *l.chart.text == *name => Some((false, l.at.0)),
@@ -193,24 +201,20 @@ impl File {
             // Its first byte also touches the part of the text before it.
             clean &= self.as_edited().reads_cleanly(at.start as usize + 1..at.end as usize);
         }
-        if found && clean { self.present(false) } else { self.drawn() }
+        if found && clean { self.present() } else { self.drawn() }
     }
 
-    fn present(&self, stale: bool) -> Readable {
-        Readable {
-            document: Arc::new(self.source.document.clone()),
-            text: self.source.text.as_str().into(),
-            positions: Arc::clone(&self.positions),
-            stale,
-        }
+    fn present(&self) -> Readable<'_> {
+        let Source { document, text, .. } = &self.source;
+        Readable { document, text, positions: &self.positions, stale: false }
     }
 
     /// The document to draw: that of the latest text without syntax errors. If there was never such
     /// a text, it is the readable part of the present one.
-    pub fn drawn(&self) -> Readable {
-        match &self.readable {
-            Some(readable) => Readable { stale: !self.is_clean(), ..readable.clone() },
-            None => self.present(false),
+    pub fn drawn(&self) -> Readable<'_> {
+        match &self.clean {
+            Some(clean) if !self.is_clean() => clean.readable(),
+            _ => self.present(),
         }
     }
 }
@@ -268,23 +272,39 @@ pub(crate) fn floor(text: &str, byte: usize) -> usize {
     byte
 }
 
+/// An earlier text without syntax errors.
+struct Clean {
+    text: Box<str>,
+    positions: Arc<Positions>,
+    /// What stands in the text. It is read when it is asked for first, because most changes bring no syntax error.
+    document: OnceLock<Document>,
+}
+
+impl Clean {
+    fn readable(&self) -> Readable<'_> {
+        let read = || g7_syntax::parse(&self.text, FileId(0)).0;
+        let document = self.document.get_or_init(read);
+        Readable { document, text: &self.text, positions: &self.positions, stale: true }
+    }
+}
+
 /// A readable document, with the text from which it was parsed.
-#[derive(Clone)]
-pub struct Readable {
+#[derive(Clone, Copy)]
+pub struct Readable<'a> {
     /// The document.
-    pub document: Arc<Document>,
+    pub document: &'a Document,
     /// The text.
-    pub text: Arc<str>,
+    pub text: &'a str,
     /// The places of the text in other units.
-    pub positions: Arc<Positions>,
+    pub positions: &'a Positions,
     /// True if it is an earlier text, because the present one has syntax errors.
     pub stale: bool,
 }
 
-impl Readable {
+impl Readable<'_> {
     /// A place in code units of the text.
     pub fn units(&self, at: Span) -> (usize, usize) {
-        let unit = |byte: u32| self.positions.unit(&self.text, byte as usize);
+        let unit = |byte: u32| self.positions.unit(self.text, byte as usize);
         (unit(at.start), unit(at.end))
     }
 
@@ -361,8 +381,8 @@ mod tests {
         .expect("it fits");
         assert!(!file.is_clean());
         let (g, h) = (file.drawn_chart("G"), file.drawn_chart("H"));
-        assert_eq!((g.stale, &*g.text), (true, CHARTS));
-        assert_eq!((h.stale, &*h.text), (false, file.text()));
+        assert_eq!((g.stale, g.text), (true, CHARTS));
+        assert_eq!((h.stale, h.text), (false, file.text()));
         assert!(file.drawn_chart("Nothing").stale);
     }
 }

@@ -1,6 +1,6 @@
 //! Offers of an editor above an item: run it, test it, prove it, draw it.
 
-use g7_model::{Document, Item, Span};
+use g7_model::{Item, Span};
 
 use crate::file::Readable;
 
@@ -27,8 +27,8 @@ pub enum Work {
 }
 
 /// The offers of a file: a chart is run and drawn, a test is run, a property is proved.
-pub fn lenses(readable: &Readable) -> Vec<Lens> {
-    let document: &Document = &readable.document;
+pub fn lenses(readable: &Readable<'_>) -> Vec<Lens> {
+    let document = readable.document;
     let mut all = Vec::new();
     let mut run = false;
     for item in &document.items {

@@ -2,9 +2,7 @@
 
 use std::ops::Range;
 
-use g7_model::{
-    Chart, ChartItem, Document, Item, Name, Plant, PlantItem, Property, Said, Span, VarDecl, say,
-};
+use g7_model::{Chart, ChartItem, Item, Name, Plant, PlantItem, Property, Said, Span, VarDecl, say};
 
 use crate::file::Readable;
 use crate::tables::{class, declaration, kind};
@@ -46,9 +44,9 @@ pub struct Entry {
 }
 
 /// The outline of a text.
-pub fn outline(readable: &Readable) -> Vec<Entry> {
-    let document: &Document = &readable.document;
-    document.items.iter().flat_map(|item| entries(item, &readable.text)).collect()
+pub fn outline(readable: &Readable<'_>) -> Vec<Entry> {
+    let document = readable.document;
+    document.items.iter().flat_map(|item| entries(item, readable.text)).collect()
 }
 
 fn entries(item: &Item, text: &str) -> Vec<Entry> {

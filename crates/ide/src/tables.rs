@@ -1,6 +1,6 @@
 //! The tables of variables and steps.
 
-use g7_model::{ChartKind, Document, Said, Span, Type, VarDecl, VarKind, say};
+use g7_model::{ChartKind, Said, Span, Type, VarDecl, VarKind, say};
 
 use crate::file::Readable;
 use crate::ids;
@@ -83,11 +83,11 @@ pub fn class(kind: VarKind) -> &'static str {
 }
 
 /// The tables of a document.
-pub fn tables(readable: &Readable) -> Tables {
-    let document: &Document = &readable.document;
+pub fn tables(readable: &Readable<'_>) -> Tables {
+    let document = readable.document;
     let (mut variables, mut steps) = (Vec::new(), Vec::new());
     let mut counts: std::collections::HashMap<&str, usize> = Default::default();
-    for t in g7_syntax::tokens(&readable.text) {
+    for t in g7_syntax::tokens(readable.text) {
         let word = readable.text.get(t.start..t.end).unwrap_or("").trim_matches('`');
         *counts.entry(word).or_default() += 1;
     }

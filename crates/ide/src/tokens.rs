@@ -104,7 +104,7 @@ pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
     let text = file.text();
     let readable = file.drawn();
     let (mut variables, mut steps, mut charts) = (HashSet::new(), HashSet::new(), HashSet::new());
-    for n in names(&readable.document) {
+    for n in names(readable.document) {
         let list = match n.meaning {
             Meaning::Step(..) => &mut steps,
             Meaning::Chart(_) => &mut charts,

@@ -2,12 +2,12 @@
 
 use std::collections::HashMap;
 
-use g7_draw::{End, Look, Options, Rect};
+use g7_draw::{End, Look, Options, Picture, Point, Rect};
 use g7_edit::{ChartSort, ItemId, Sort};
 use g7_ide::ids;
 use g7_ide::{File, Readable};
 use g7_model::{ActionKind, Chart, ChartKind, Order, Said, Step, StepKind, Transition, say};
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Serialize, Serializer};
 
 /// The standard whose symbols are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
@@ -51,10 +51,28 @@ impl Wish {
     }
 }
 
-/// A rectangle: its left and upper edge, width, height.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Box"))]
-pub(crate) struct Area([f64; 4]);
+/// A rectangle, sent as its left and upper edge, width, height.
+#[derive(Clone, Copy, Debug, Default)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Box", as = "[f64; 4]"))]
+pub(crate) struct Area(Rect);
+
+impl Serialize for Area {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        let Rect { x, y, w, h } = self.0;
+        [x, y, w, h].map(px).serialize(to)
+    }
+}
+
+/// A point or a vector, sent as its two lengths.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(as = "[f64; 2]"))]
+pub(crate) struct Spot(pub(crate) Point);
+
+impl Serialize for Spot {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        [self.0.x, self.0.y].map(px).serialize(to)
+    }
+}
 
 /// The kinds of symbols.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
@@ -89,13 +107,11 @@ pub(crate) struct Drawn {
 #[derive(Debug, Default, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Shape", optional_fields))]
 pub(crate) struct Item {
-    id: String,
+    pub(crate) id: String,
     part: Part,
     area: Area,
     #[serde(skip)]
-    pub(crate) svg: String,
-    #[serde(skip)]
-    pub(crate) far: String,
+    pub(crate) picture: Picture,
     pub(crate) from: usize,
     pub(crate) to: usize,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -106,7 +122,7 @@ pub(crate) struct Item {
     text: Option<Area>,
     /// The anchor: the middle of the upper edge of a step, the middle of the bar of a transition.
     #[serde(skip_serializing_if = "Option::is_none")]
-    at: Option<[f64; 2]>,
+    at: Option<Spot>,
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -132,21 +148,40 @@ pub(crate) struct Item {
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     initial: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
-    ends: Option<[String; 2]>,
+    pub(crate) ends: Option<[String; 2]>,
 }
 
 impl Item {
-    /// True for the same symbol, wherever it stands in the text.
-    pub(crate) fn same(&self, other: &Item) -> bool {
-        // The texts `svg` and `far` are long and were compared before.
-        let Item { id, part, area, svg: _, far: _, from: _, to: _, square, bar, text, at, .. } = self;
+    /// How far this symbol is moved from another one that is the same but for its number and its places in the
+    /// text; `None` if it is another.
+    pub(crate) fn moved_from(&self, old: &Item) -> Option<Point> {
+        // `picture` is compared last, because it is long.
+        let Item { id: _, part, area: _, picture, from: _, to: _, square, bar, text, at, .. } = self;
         let Item { name, label, comment, source, priority, steps, .. } = self;
         let Item { step, expansion, encloses, initial, ends, .. } = self;
-        (id, part, area, square, bar) == (&other.id, &other.part, &other.area, &other.square, &other.bar)
-            && (text, at, name, label) == (&other.text, &other.at, &other.name, &other.label)
-            && (comment, source, priority) == (&other.comment, &other.source, &other.priority)
-            && (steps, step, expansion) == (&other.steps, &other.step, &other.expansion)
-            && (encloses, initial, ends) == (&other.encloses, &other.initial, &other.ends)
+        let same = (part, name, label, comment) == (&old.part, &old.name, &old.label, &old.comment)
+            && (source, priority, steps) == (&old.source, &old.priority, &old.steps)
+            && (step, expansion, encloses, initial)
+                == (&old.step, &old.expansion, &old.encloses, &old.initial)
+            && same_ends(ends.as_ref(), old.ends.as_ref());
+        let by = if same { picture.moved_from(&old.picture) } else { None }?;
+        let boxes = [(*square, old.square), (*bar, old.bar), (*text, old.text)];
+        let moved = |(new, old): (Option<Area>, Option<Area>)| match (new, old) {
+            (Some(new), Some(old)) => new.0.is_moved_from(&old.0, by),
+            (new, old) => new.is_none() && old.is_none(),
+        };
+        let anchor = at.map(|a| a.0) == old.at.map(|a| Point { x: a.0.x + by.x, y: a.0.y + by.y });
+        (anchor && boxes.into_iter().all(moved)).then_some(by)
+    }
+}
+
+/// True if two links lead from and to the same steps; a transition may have another number.
+fn same_ends(ends: Option<&[String; 2]>, old: Option<&[String; 2]>) -> bool {
+    let is_transition = |id: &str| id.split('/').nth(1) == Some("t");
+    let same = |(a, b): (&String, &String)| a == b || is_transition(a) && is_transition(b);
+    match (ends, old) {
+        (Some(ends), Some(old)) => ends.iter().zip(old).all(same),
+        (ends, old) => ends.is_none() && old.is_none(),
     }
 }
 
@@ -160,13 +195,13 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
         .charts()
         .find(find)
         .ok_or_else(|| say!("there is no chart `{name}`", name = wish.chart))?;
-    let drawing = g7_draw::draw(&readable.document, chart, &options);
-    let names = Names::new(&readable, chart);
+    let drawing = g7_draw::draw(readable.document, chart, &options);
+    let names = Names::new(readable, chart);
     Ok(Drawn {
         chart: wish.chart.clone(),
         kind: sort(chart.kind),
         stale: readable.stale,
-        area: area(drawing.area),
+        area: Area(drawing.area),
         items: drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect(),
     })
 }
@@ -194,7 +229,7 @@ pub(crate) fn opens(step: &Step) -> impl Iterator<Item = &str> {
 }
 
 struct Names<'a> {
-    readable: &'a Readable,
+    readable: Readable<'a>,
     chart: &'a Chart,
     steps: Vec<&'a Step>,
     transitions: Vec<&'a Transition>,
@@ -204,13 +239,13 @@ struct Names<'a> {
 }
 
 impl<'a> Names<'a> {
-    fn new(readable: &'a Readable, chart: &'a Chart) -> Names<'a> {
+    fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
         Names {
             readable,
             chart,
             steps: chart.steps().collect(),
             transitions: chart.transitions().collect(),
-            comments: g7_draw::comments(&readable.document, chart).map(|(text, _)| text).collect(),
+            comments: g7_draw::comments(readable.document, chart).map(|(text, _)| text).collect(),
             seen: Default::default(),
         }
     }
@@ -218,7 +253,7 @@ impl<'a> Names<'a> {
     fn item(&self, number: usize, item: g7_draw::Item) -> Item {
         let chart = &*self.chart.name.text;
         let (from, to) = self.readable.units(item.at);
-        let base = Item { area: area(item.area), svg: item.svg, far: item.far, from, to, ..Item::default() };
+        let base = Item { area: Area(item.area), picture: item.picture, from, to, ..Item::default() };
         let made = match item.part {
             g7_draw::Part::Step { step, square } => self.step(step, square, base),
             g7_draw::Part::Action { step, index } => {
@@ -241,8 +276,7 @@ impl<'a> Names<'a> {
             g7_draw::Part::Comment { comment, place } => {
                 let id = ItemId::note(chart, comment as usize).to_string();
                 let text = self.comments.get(comment as usize).map(|t| (*t).to_owned());
-                let at = Some([px(place.x), px(place.y)]);
-                Item { id, part: Part::Comment, at, comment: text, ..base }
+                Item { id, part: Part::Comment, at: Some(Spot(place)), comment: text, ..base }
             }
             g7_draw::Part::Text => {
                 Item { id: ItemId::other(chart, number).to_string(), part: Part::Text, ..base }
@@ -275,8 +309,8 @@ impl<'a> Names<'a> {
         Item {
             id: ids::step(&self.chart.name.text, &step.name.text),
             part: Part::Step,
-            at: Some([px(square.x) + px(square.w) / 2.0, px(square.y)]),
-            square: Some(area(square)),
+            at: Some(Spot(Point { x: square.x + square.w / 2, y: square.y })),
+            square: Some(Area(square)),
             name: Some(step.name.text.to_string()),
             comment: step.comment.as_deref().map(str::to_owned),
             step: Some(sort),
@@ -292,9 +326,9 @@ impl<'a> Names<'a> {
         Item {
             id: ids::transition(&self.chart.name.text, number as usize),
             part: Part::Transition,
-            at: Some([px(bar.x) + px(bar.w) / 2.0, px(bar.y) + px(bar.h) / 2.0]),
-            bar: Some(area(bar)),
-            text: Some(area(text)),
+            at: Some(Spot(Point { x: bar.x + bar.w / 2, y: bar.y + bar.h / 2 })),
+            bar: Some(Area(bar)),
+            text: Some(Area(text)),
             label: t.label.as_ref().map(|l| l.text.to_string()),
             comment: t.comment.as_deref().map(str::to_owned),
             source: Some(self.readable.words(t.receptivity.at.0)),
@@ -327,10 +361,6 @@ impl<'a> Names<'a> {
 /// Converts hundredths of u to px; a u is 10 px.
 fn px(hundredths: i32) -> f64 {
     f64::from(hundredths) / 10.0
-}
-
-fn area(r: Rect) -> Area {
-    Area([px(r.x), px(r.y), px(r.w), px(r.h)])
 }
 
 /// The kind of a chart, as the page has it.

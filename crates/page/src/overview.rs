@@ -132,7 +132,7 @@ const SCAN: Nanos = Nanos::from_millis(10);
 
 fn charts(file: &File) -> Vec<ChartRow> {
     let readable = file.drawn();
-    let document = &*readable.document;
+    let document = readable.document;
     let row = |c: &g7_model::Chart| {
         let (from, to) = if readable.stale { (0, 0) } else { file.units(c.at.0) };
         ChartRow {

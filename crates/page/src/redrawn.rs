@@ -1,16 +1,14 @@
 //! A drawing as its difference from the one that the page has.
 //!
-//! A gesture changes a few symbols of a chart, but the drawing of 1000 steps has 1.5 MB of JSON. So the page names the
-//! drawing that it has, by its number; symbols that are the same, or that look the same, are not
-//! sent again.
+//! A gesture changes a few symbols of a chart, but the drawing of 1000 steps has 1.5 MB of JSON, and symbols
+//! behind the change move. So the page names the drawing that it has, by its number; of symbols that look the same,
+//! only how far they have moved is sent.
 
 use std::collections::HashMap;
-use std::collections::hash_map::DefaultHasher;
-use std::hash::{Hash, Hasher};
 
 use serde::Serialize;
 
-use crate::drawing::{Drawn, Item, Wish};
+use crate::drawing::{Drawn, Item, Spot, Wish};
 
 /// Greatest number of drawings that are kept; each is as large as its JSON.
 const MOST: usize = 8;
@@ -37,25 +35,48 @@ pub(crate) struct Redrawn<'a> {
     #[serde(skip_serializing_if = "Option::is_none")]
     since: Option<u64>,
     items: Vec<Sent<'a>>,
-    /// The first and the last place in the text of each symbol that is the same.
-    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    places: Vec<usize>,
 }
 
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(untagged)]
 enum Sent<'a> {
-    /// The symbol with this number in the other drawing, but for its places in the text.
-    Same(usize),
-    /// A symbol that is drawn as another one.
-    Alike {
-        r#as: usize,
-        #[serde(flatten)]
-        item: &'a Item,
-    },
+    Kept(Kept<'a>),
+    Alike(Alike<'a>),
     New(Whole<'a>),
+}
+
+/// Symbols that follow one another in the other drawing too, and are the same there.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
+struct Kept<'a> {
+    /// The number of the first one in the other drawing.
+    r#as: usize,
+    count: usize,
+    /// How far they have moved.
+    by: Spot,
+    /// By how many code units their places in the text have moved.
+    along: isize,
+    /// Their ids, if these contain the number of a transition that has another one now.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ids: Vec<&'a str>,
+    /// With `ids`: the ends of those that have ends.
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    ends: Vec<&'a [String; 2]>,
+}
+
+/// A symbol that is drawn as another one.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+struct Alike<'a> {
+    /// The number of that one in the other drawing.
+    r#as: usize,
+    /// How far from it this one stands.
+    by: Spot,
+    #[serde(flatten)]
+    item: &'a Item,
 }
 
 /// A symbol with its drawing.
@@ -63,9 +84,9 @@ enum Sent<'a> {
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Item"))]
 struct Whole<'a> {
     /// The SVG of the symbol.
-    svg: &'a str,
+    svg: String,
     /// Path data for zoomed-out views.
-    far: &'a str,
+    far: String,
     #[serde(flatten)]
     item: &'a Item,
 }
@@ -111,30 +132,105 @@ impl<'a> Redrawn<'a> {
             Some((since, items)) => (Some(since), items),
             None => (None, &[][..]),
         };
-        let known: HashMap<u64, usize> = old.iter().enumerate().map(|(k, item)| (look(item), k)).collect();
-        let mut places = Vec::new();
-        let alike = |item: &Item| {
-            // A whole drawing is compared with nothing, so its symbols need no numbers.
-            let k = if known.is_empty() { None } else { known.get(&look(item)).copied() }?;
-            old.get(k).filter(|o| o.svg == item.svg && o.far == item.far).map(|o| (k, o))
-        };
-        let items = drawn.items.iter().map(|item| match alike(item) {
-            Some((k, o)) if o.same(item) => {
-                places.extend([item.from, item.to]);
-                Sent::Same(k)
+        let mut seeker = Seeker { old, next: 0, by_id: None };
+        let mut items = Vec::new();
+        for item in &drawn.items {
+            let Some((k, by, was)) = seeker.find(item) else {
+                items.push(seeker.alike(item).unwrap_or_else(|| Sent::New(Whole::new(item))));
+                continue;
+            };
+            let before = if let Some(Sent::Kept(kept)) = items.last_mut() { Some(kept) } else { None };
+            if !before.is_some_and(|kept| kept.add(k, by, was, item)) {
+                items.push(Kept::of_one(k, by, was, item));
             }
-            Some((k, _)) => Sent::Alike { r#as: k, item },
-            None => Sent::New(Whole { svg: &item.svg, far: &item.far, item }),
-        });
-        let items = items.collect();
-        Redrawn { drawn, number, since, items, places }
+        }
+        Redrawn { drawn, number, since, items }
     }
 }
 
-/// A number for the drawing of a symbol; two different ones can have the same.
-fn look(item: &Item) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    item.svg.hash(&mut hasher);
-    item.far.hash(&mut hasher);
-    hasher.finish()
+impl<'a> Kept<'a> {
+    /// The first of some symbols; one whose places in the text have not moved as a whole is sent as alike.
+    fn of_one(k: usize, by: Spot, was: &Item, item: &'a Item) -> Sent<'a> {
+        let Some(along) = along(was, item) else { return Sent::Alike(Alike { r#as: k, by, item }) };
+        let mut kept = Kept { r#as: k, count: 1, by, along, ids: Vec::new(), ends: Vec::new() };
+        if is_renumbered(was, item) {
+            kept.rename(item);
+        }
+        Sent::Kept(kept)
+    }
+
+    /// Adds a symbol, if it follows the others in the other drawing and has moved with them.
+    fn add(&mut self, k: usize, by: Spot, was: &Item, item: &'a Item) -> bool {
+        let renumbered = is_renumbered(was, item);
+        let follows = self.r#as + self.count == k && self.by == by && along(was, item) == Some(self.along);
+        if !follows || renumbered == self.ids.is_empty() {
+            return false;
+        }
+        self.count += 1;
+        if renumbered {
+            self.rename(item);
+        }
+        true
+    }
+
+    fn rename(&mut self, item: &'a Item) {
+        self.ids.push(&item.id);
+        self.ends.extend(&item.ends);
+    }
+}
+
+impl<'a> Whole<'a> {
+    fn new(item: &'a Item) -> Whole<'a> {
+        Whole { svg: item.picture.svg(), far: item.picture.far(), item }
+    }
+}
+
+fn is_renumbered(was: &Item, item: &Item) -> bool {
+    (&was.id, &was.ends) != (&item.id, &item.ends)
+}
+
+/// By how many code units the places of a symbol in the text have moved; `None` if its length is another.
+fn along(was: &Item, item: &Item) -> Option<isize> {
+    let moved = |new: usize, old: usize| new as isize - old as isize;
+    Some(moved(item.from, was.from)).filter(|along| *along == moved(item.to, was.to))
+}
+
+/// Seeks the symbols of a drawing in the one before, where most have the same neighbours.
+struct Seeker<'a> {
+    old: &'a [Item],
+    /// The number of the symbol behind the one that was found last.
+    next: usize,
+    by_id: Option<HashMap<&'a str, usize>>,
+}
+
+/// Number of symbols that are looked at behind the one that was found last: a gesture takes out a few.
+const AHEAD: usize = 8;
+
+impl<'a> Seeker<'a> {
+    /// The same symbol: its number, how far the given one is moved from it, and itself.
+    fn find(&mut self, item: &Item) -> Option<(usize, Spot, &'a Item)> {
+        let old = self.old;
+        let same = |k: usize| {
+            let was = old.get(k)?;
+            Some((k, Spot(item.moved_from(was)?), was))
+        };
+        let ahead = old.len().min(self.next + AHEAD);
+        let found = (self.next..ahead).find_map(same).or_else(|| same(self.named(&item.id)?))?;
+        self.next = found.0 + 1;
+        Some(found)
+    }
+
+    /// The symbol as the one with the same id, if that one looks the same.
+    fn alike<'b>(&mut self, item: &'b Item) -> Option<Sent<'b>> {
+        let k = self.named(&item.id)?;
+        let by = Spot(item.picture.moved_from(&self.old.get(k)?.picture)?);
+        Some(Sent::Alike(Alike { r#as: k, by, item }))
+    }
+
+    /// The number of the symbol with an id.
+    fn named(&mut self, id: &str) -> Option<usize> {
+        let old = self.old;
+        let by_id = || old.iter().enumerate().map(|(k, item)| (&*item.id, k)).collect();
+        self.by_id.get_or_insert_with(by_id).get(id).copied()
+    }
 }

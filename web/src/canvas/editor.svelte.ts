@@ -3,7 +3,8 @@
 import type { OpenFile } from '../lib/files.svelte';
 import { actionOf, kindOf } from '../lib/ids';
 import { page } from '../lib/page';
-import type { Box, Edited, Gesture, Item } from '../lib/protocol';
+import type { Box, Edited, Gesture } from '../lib/protocol';
+import type { Placed as Item } from '../lib/redrawn';
 import { shell } from '../lib/shell.svelte';
 import { Scene } from './scene';
 
@@ -103,7 +104,8 @@ class Editor {
   async #took(file: OpenFile, chart: string, edited: Edited, selection: ReadonlySet<string>): Promise<void> {
     if (file !== this.file || chart !== this.chart) return;
     if (shell.chart(file) === chart) {
-      this.scene = new Scene(await file.drawing(chart));
+      const drawing = await file.drawing(chart);
+      if (this.scene?.drawing !== drawing) this.scene = new Scene(drawing);
     }
     for (const sentence of edited.told ?? []) shell.say(sentence);
     // A selection made during the gesture is kept.

@@ -1,6 +1,6 @@
 // The meaning of a press on the drawing: select, move, mark an area, draw a link. The camera moves
 // the view itself.
-import type { Item } from '../lib/protocol';
+import type { Placed as Item } from '../lib/redrawn';
 import { actionOf } from '../lib/ids';
 import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';

@@ -1,4 +1,5 @@
 // Printing: the whole chart on one page, without the rest of the page.
+import { svgOf } from '../lib/redrawn';
 import { editor } from './editor.svelte';
 
 /** Puts a complete picture into the document while the browser prints. */
@@ -15,7 +16,7 @@ export function keepPrintable(): () => void {
     picture.append(title);
     picture.insertAdjacentHTML(
       'beforeend',
-      `<svg class="g7" width="${w + 20}" viewBox="${x - 10} ${y - 10} ${w + 20} ${h + 20}">${drawing.items.map((i) => i.svg).join('')}</svg>`,
+      `<svg class="g7" width="${w + 20}" viewBox="${x - 10} ${y - 10} ${w + 20} ${h + 20}">${drawing.items.map(svgOf).join('')}</svg>`,
     );
     document.body.append(picture);
   };

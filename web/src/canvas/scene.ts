@@ -1,8 +1,8 @@
 // A drawing prepared for queries: symbols by id, which symbol follows which, which lies where. It
 // knows geometry only.
 import { actionOf } from '../lib/ids';
-import type { Box, Item } from '../lib/protocol';
-import type { Drawing } from '../lib/redrawn';
+import type { Box } from '../lib/protocol';
+import type { Drawing, Placed as Item } from '../lib/redrawn';
 
 export type Point = [x: number, y: number];
 
@@ -71,9 +71,11 @@ export class Scene {
     if (known) return known;
     const found = /class="g7-action" x="([-\d.]+)" y="([-\d.]+)" width="([\d.]+)" height="([\d.]+)"/.exec(action.svg);
     const cut = found ? null : /class="g7-action" d="([^"]+)"/.exec(action.svg)?.[1];
-    const box: Box = found ? [Number(found[1]), Number(found[2]), Number(found[3]), Number(found[4])] : cut ? round(corners(cut)) : action.area;
-    this.#rectangles.set(action.id, box);
-    return box;
+    const box: Box | null = found ? [Number(found[1]), Number(found[2]), Number(found[3]), Number(found[4])] : cut ? round(corners(cut)) : null;
+    const [dx, dy] = action.shift ?? [0, 0];
+    const placed: Box = box ? [box[0] + dx, box[1] + dy, box[2], box[3]] : action.area;
+    this.#rectangles.set(action.id, placed);
+    return placed;
   }
 
   /** The height of the token in a step: below the name, or on the lower edge if the name has two
@@ -167,7 +169,8 @@ export class Scene {
   line(link: Item): Point[] {
     const known = this.#lines.get(link.id);
     if (known) return known;
-    const line = corners(link.far);
+    const [dx, dy] = link.shift ?? [0, 0];
+    const line = corners(link.far).map(([x, y]): Point => [x + dx, y + dy]);
     this.#lines.set(link.id, line);
     return line;
   }

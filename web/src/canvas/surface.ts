@@ -1,7 +1,12 @@
 // The still picture: symbols in blocks of the plane; only visible blocks are in the document.
 // Painting dominates the cost, so panning moves one layer, and in a zoomed-out view each block is
 // one path without texts.
-import type { Item } from '../lib/protocol';
+//
+// The symbols of a block stand in one cell of the grid by the place where their SVG shows them, and are all shifted
+// from there by the same vector. So where symbols only move, the block gets another transformation and keeps its nodes:
+// a text that is made anew is set anew, which costs more than all else. A transformation of each symbol would cost
+// every move of the view.
+import { placing, type Placed as Item } from '../lib/redrawn';
 import type { Scene } from './scene';
 
 const SVG = 'http://www.w3.org/2000/svg';
@@ -10,14 +15,19 @@ const BLOCK = 640;
 /** Below this zoom texts cannot be read and are left out. */
 export const FAR = 0.3;
 
+/** The layers of blocks, from below: what is longer than some blocks, other links, symbols over them. */
+const LAYERS = ['long', 'links', 'symbols'] as const;
+type Layer = (typeof LAYERS)[number];
+
 interface Block {
+  layer: Layer;
   x: number;
   y: number;
   right: number;
   low: number;
   items: Item[];
-  near: string | null;
-  far: string | null;
+  /** What screen readers say of the symbols, while they are in the document. */
+  names: string[];
   node: SVGElement | null;
   shown: 'near' | 'far' | null;
 }
@@ -34,42 +44,69 @@ const escaped = (text: string) =>
 
 export class Surface {
   readonly root: SVGGElement;
-  #long: SVGGElement;
-  #blocks = new Map<string, Block>();
+  #layers: Record<Layer, SVGGElement>;
+  /** The blocks of each cell and layer. */
+  #cells = new Map<number, Block[]>();
   #name: Namer;
 
   constructor(root: SVGGElement, name: Namer) {
     this.root = root;
     this.#name = name;
-    this.#long = group();
-    root.append(this.#long);
+    this.#layers = { long: group(), links: group(), symbols: group() };
+    root.append(...LAYERS.map((layer) => this.#layers[layer]));
   }
 
-  /** Shows another drawing; blocks that look the same keep their nodes. */
+  /** Shows another drawing; blocks whose symbols look the same keep their nodes. */
   set(scene: Scene, again = false): void {
-    const old = this.#blocks;
-    this.#blocks = new Map();
+    const old = this.#cells;
+    this.#cells = new Map();
     for (const item of scene.items) this.#put(item);
-    for (const [key, block] of this.#blocks) {
-      const was = old.get(key);
-      if (!was?.node || again) continue;
-      const same = was.shown === 'near' ? was.near === this.#near(block) : was.far === this.#far(block);
-      if (!same) continue;
-      block.node = was.node;
-      block.shown = was.shown;
-      was.node = null;
+    for (const [cell, were] of old) {
+      const blocks = again ? [] : (this.#cells.get(cell) ?? []);
+      for (const was of were) {
+        if (!was.node) continue;
+        const block = blocks.find((block) => !block.node && alike(was, block));
+        if (block) this.#keep(was, block);
+        else was.node.remove();
+      }
     }
-    for (const was of old.values()) was.node?.remove();
+  }
+
+  /** Gives the nodes of a block to the block that looks like it. */
+  #keep(was: Block, block: Block): void {
+    const node = was.node as SVGElement;
+    block.node = node;
+    block.shown = was.shown;
+    block.names = was.names;
+    const [before, after] = [placing(was.items[0] as Item), placing(block.items[0] as Item)];
+    if (before !== after) place(node, after);
+    if (block.shown !== 'near') return;
+    block.items.forEach((item, n) => {
+      const old = was.items[n] as Item;
+      if (old === item) return;
+      const child = node.children[n] as SVGElement;
+      if (old.id !== item.id) {
+        child.setAttribute('data-id', item.id);
+        if (spoken(item)) child.id = domId(item.id);
+      }
+      if (!spoken(item)) return;
+      const name = this.#name(item);
+      if (name === block.names[n]) return;
+      child.setAttribute('aria-label', name);
+      block.names[n] = name;
+    });
   }
 
   #put(item: Item): void {
     const [x, y, w, h] = item.area;
-    const long = Math.max(w, h) > BLOCK * 1.5;
-    const key = long ? `l ${item.id}` : `${Math.floor(x / BLOCK)} ${Math.floor(y / BLOCK)}`;
-    const block = this.#blocks.get(key);
+    const [dx, dy] = item.shift ?? [0, 0];
+    const layer = Math.max(w, h) > BLOCK * 1.5 ? 'long' : item.part === 'link' || item.part === 'text' ? 'links' : 'symbols';
+    const cell = cellOf(layer, x - dx, y - dy);
+    let blocks = this.#cells.get(cell);
+    if (!blocks) this.#cells.set(cell, (blocks = []));
+    const block = blocks.find(({ items: [first] }) => (first?.shift?.[0] ?? 0) === dx && (first?.shift?.[1] ?? 0) === dy);
     if (!block) {
-      const made: Block = { x, y, right: x + w, low: y + h, items: [item], near: null, far: null, node: null, shown: null };
-      this.#blocks.set(key, made);
+      blocks.push({ layer, x, y, right: x + w, low: y + h, items: [item], names: [], node: null, shown: null });
       return;
     }
     block.x = Math.min(block.x, x);
@@ -83,10 +120,10 @@ export class Surface {
   show(x: number, y: number, right: number, low: number, k: number): void {
     const want = k < FAR ? 'far' : 'near';
     const [enter, leave] = [300 / k, 900 / k];
-    for (const [key, b] of this.#blocks) {
+    for (const b of [...this.#cells.values()].flat()) {
       const beyond = Math.max(x - b.right, b.x - right, y - b.low, b.y - low);
       if (b.shown === want ? beyond <= leave : beyond <= enter) {
-        if (b.shown !== want) this.#draw(key, b, want);
+        if (b.shown !== want) this.#draw(b, want);
       } else if (b.node) {
         b.node.remove();
         b.node = null;
@@ -100,34 +137,46 @@ export class Surface {
     return this.root.querySelector(`[data-id="${CSS.escape(id)}"]`);
   }
 
-  #draw(key: string, block: Block, how: 'near' | 'far'): void {
+  #draw(block: Block, how: 'near' | 'far'): void {
     block.node?.remove();
     const node = how === 'near' ? group() : (document.createElementNS(SVG, 'path') as SVGElement);
-    if (how === 'near') node.innerHTML = this.#near(block);
-    else {
+    if (how === 'near') {
+      block.names = block.items.map((item) => (spoken(item) ? this.#name(item) : ''));
+      node.innerHTML = block.items.map((item, n) => near(item, block.names[n] as string)).join('');
+    } else {
       node.setAttribute('class', 'far');
-      node.setAttribute('d', this.#far(block));
+      node.setAttribute('d', block.items.map((item) => item.far).join(''));
     }
+    place(node, placing(block.items[0] as Item));
     block.node = node;
     block.shown = how;
-    (key.startsWith('l ') ? this.#long : this.root).append(node);
+    this.#layers[block.layer].append(node);
   }
+}
 
-  #near(block: Block): string {
-    block.near ??= block.items.map((item) => this.#item(item)).join('');
-    return block.near;
-  }
+/** A number for the cell of a layer in which a place lies. The long layer has small cells. */
+function cellOf(layer: Layer, x: number, y: number): number {
+  const side = layer === 'long' ? 1 : BLOCK;
+  return (Math.floor(y / side) * 2 ** 24 + Math.floor(x / side)) * LAYERS.length + LAYERS.indexOf(layer);
+}
 
-  #far(block: Block): string {
-    block.far ??= block.items.map((item) => item.far).join('');
-    return block.far;
-  }
+/** True if screen readers name a symbol. */
+const spoken = (item: Item): boolean => item.part !== 'link' && item.part !== 'text';
 
-  #item(item: Item): string {
-    const id = escaped(item.id);
-    if (item.part === 'link' || item.part === 'text') return `<g data-id="${id}">${item.svg}</g>`;
-    return `<g data-id="${id}" id="${escaped(domId(item.id))}" role="img" aria-label="${escaped(this.#name(item))}">${item.svg}</g>`;
-  }
+function near(item: Item, name: string): string {
+  const id = escaped(item.id);
+  if (!spoken(item)) return `<g data-id="${id}">${item.svg}</g>`;
+  return `<g data-id="${id}" id="${escaped(domId(item.id))}" role="img" aria-label="${escaped(name)}">${item.svg}</g>`;
+}
+
+/** True if the symbols of two blocks look the same, wherever they stand. */
+function alike({ items: was }: Block, { items }: Block): boolean {
+  return was.length === items.length && items.every((item, n) => item.svg === was[n]?.svg && item.far === was[n]?.far && spoken(item) === spoken(was[n] as Item));
+}
+
+function place(node: SVGElement, how: string | undefined): void {
+  if (how === undefined) node.removeAttribute('transform');
+  else node.setAttribute('transform', how);
 }
 
 function group(): SVGGElement {

@@ -2,7 +2,7 @@
 // other, and only those that become visible.
 import { page } from '../lib/page';
 import type { Box } from '../lib/protocol';
-import { drawn } from '../lib/redrawn';
+import { drawn, svgOf } from '../lib/redrawn';
 import { server, type FileRow } from '../lib/server';
 
 export interface Thumb {
@@ -42,7 +42,7 @@ export async function picture(path: string, text: string): Promise<Thumb> {
     const drawing = chart ? await drawn({ file, chart: chart.name }) : null;
     return {
       about: about(text),
-      svg: drawing?.items.map((i) => i.svg).join('') ?? '',
+      svg: drawing?.items.map(svgOf).join('') ?? '',
       area: drawing?.area ?? [0, 0, 1, 1],
       steps: charts.reduce((n, c) => n + c.steps, 0),
       tests: tests.length,

@@ -390,7 +390,7 @@ impl<'a> Paper<'a> {
             let text = format!("{page} / {}", self.cells.pages);
             p.text("g7-label", right - width(&text, SMALL) - 60, top + 160, SMALL, &text);
             let area = p.area().unwrap_or_default();
-            items.push(Item { part: Part::Text, area, svg: p.svg(), far: p.far(), at: Span::default() });
+            items.push(Item { part: Part::Text, area, picture: p, at: Span::default() });
         }
         items
     }
