@@ -88,7 +88,14 @@ pub(crate) fn value(ty: Type, words: &[u64]) -> Value {
     match ty {
         Type::Bool => Value::Bool(word != 0),
         Type::Sint | Type::Int | Type::Dint | Type::Lint => Value::Int((word as i64).into()),
-        Type::Usint | Type::Uint | Type::Udint | Type::Ulint => Value::Int(word.into()),
+        Type::Usint
+        | Type::Uint
+        | Type::Udint
+        | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword => Value::Int(word.into()),
         Type::Real => Value::Real(f32::from_bits(word as u32)),
         Type::Lreal => Value::Lreal(f64::from_bits(word)),
         Type::Time => Value::Time(word as i64),

@@ -44,7 +44,14 @@ impl Chance {
             Type::Bool => vec![n & 1],
             Type::Real => vec![u64::from(((n % 41) as f32 / 4.0 - 5.0).to_bits())],
             Type::Lreal => vec![((n % 41) as f64 / 4.0 - 5.0).to_bits()],
-            Type::Usint | Type::Uint | Type::Udint | Type::Ulint => vec![n % 12],
+            Type::Usint
+            | Type::Uint
+            | Type::Udint
+            | Type::Ulint
+            | Type::Byte
+            | Type::Word
+            | Type::Dword
+            | Type::Lword => vec![n % 12],
             Type::Time => vec![(n % 40) * 50_000_000],
             Type::String(room) => {
                 let text: String = "grafcet".chars().take((n % 8).min(room.into()) as usize).collect();
@@ -62,7 +69,14 @@ fn told(ty: Type, words: &[u64]) -> Value {
         Type::Bool => json!(word != 0),
         Type::Real => json!(f64::from(f32::from_bits(word as u32))),
         Type::Lreal => json!(f64::from_bits(word)),
-        Type::Usint | Type::Uint | Type::Udint | Type::Ulint => json!(word),
+        Type::Usint
+        | Type::Uint
+        | Type::Udint
+        | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword => json!(word),
         Type::Time => json!(word as i64 as f64 / 1e9),
         Type::String(_) => json!(read_text(words, 0)),
         _ => json!(word as i64),

@@ -459,8 +459,7 @@ impl Body<'_> {
         let made = match e {
             Term::Neg(ty, x) => {
                 let n = num(*ty).unwrap_or(Num::I64);
-                let x = self.number(x, n);
-                (operations::negate(n, x), n)
+                (operations::negate(n, self.number(x, n)), n)
             }
             Term::Arith(op, ty, a, b) => {
                 let n = num(*ty).unwrap_or(Num::I64);
@@ -471,6 +470,10 @@ impl Body<'_> {
                 let to = num(*to).unwrap_or(Num::I64);
                 let x = self.text(x);
                 (operations::read_number(to, x, &mut needs), to)
+            }
+            Term::Convert(from, to, _) if g7_compile::tree::transfers(*from, *to) => {
+                let n = num(*to).unwrap_or(Num::I64);
+                (Made::Plain(self.number(e, n)), n)
             }
             Term::Convert(from, to, x) => {
                 let (from, to) = (num(*from).unwrap_or(Num::I64), num(*to).unwrap_or(Num::I64));

@@ -153,6 +153,10 @@ pub(crate) fn compare(c: Cmp, n: Num, x: Expr, y: Expr) -> Expr {
         return Expr::Bool(matches!(c, Cmp::Eq | Cmp::Le | Cmp::Ge));
     }
     let unsigned = !is_signed(n) && !is_real(n);
+    // A constant stands on the right, so that it is seen below.
+    if matches!(c, Cmp::Eq | Cmp::Ne) && matches!(x, Expr::Bool(_)) && !matches!(y, Expr::Bool(_)) {
+        return compare(c, n, y, x);
+    }
     match (c, n, &x, &y) {
         (Cmp::Eq, Num::Bool, _, Expr::Bool(true)) | (Cmp::Ne, Num::Bool, _, Expr::Bool(false)) => x,
         (Cmp::Eq, Num::Bool, _, Expr::Bool(false)) | (Cmp::Ne, Num::Bool, _, Expr::Bool(true)) => x.not(),
@@ -242,6 +246,17 @@ pub(crate) fn call(f: Builtin, n: Num, mut args: Vec<Expr>, needs: &mut Needs) -
             let (Some(low), Some(x), Some(high)) = (low, x, high) else { return Made::Plain(Expr::size(0)) };
             let above = Expr::call(named("max", n), vec![x, low]);
             Made::Plain(Expr::call(named("min", n), vec![above, high]))
+        }
+        Builtin::BitAnd | Builtin::BitOr | Builtin::BitXor => {
+            let op = match f {
+                Builtin::BitAnd => Bin::BitAnd,
+                Builtin::BitOr => Bin::BitOr,
+                _ => Bin::BitXor,
+            };
+            let joined = args.into_iter().map(|e| typed(e, n)).reduce(|a, b| a.bin(op, b));
+            // C works in `int` where the type is smaller.
+            let joined = joined.unwrap_or(Expr::size(0));
+            Made::Plain(if bits(n) < 32 { joined.cast(vars::ty(n)) } else { joined })
         }
         _ if f.shifts() => Made::Checked(named(&name(f), n), args),
         Builtin::Abs if is_signed(n) => Made::Checked(named("abs", n), args),

@@ -8,13 +8,14 @@ use crate::tree::{Arm, Bin, Block, Const, Expr, Function, Known, Module, Stmt, S
 /// Lints of clippy that printed code does not keep; the book says why.
 pub(crate) const ALLOWED: &str = "\
 #![allow(
-    clippy::cast_lossless, clippy::cast_possible_truncation, clippy::cast_precision_loss,
-    clippy::cast_sign_loss, clippy::collapsible_if, clippy::collapsible_match, clippy::doc_markdown,
-    clippy::float_cmp, clippy::many_single_char_names, clippy::match_same_arms,
-    clippy::needless_range_loop, clippy::nonminimal_bool, clippy::overly_complex_bool_expr,
-    clippy::similar_names, clippy::single_match, clippy::single_match_else,
-    clippy::struct_excessive_bools, clippy::too_many_lines, clippy::trivially_copy_pass_by_ref,
-    clippy::unnecessary_cast, clippy::unreadable_literal
+    clippy::cast_lossless, clippy::cast_possible_truncation, clippy::cast_possible_wrap,
+    clippy::cast_precision_loss, clippy::cast_sign_loss, clippy::collapsible_if,
+    clippy::collapsible_match, clippy::doc_markdown, clippy::float_cmp,
+    clippy::many_single_char_names, clippy::match_same_arms, clippy::needless_range_loop,
+    clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::similar_names,
+    clippy::single_match, clippy::single_match_else, clippy::struct_excessive_bools,
+    clippy::too_many_lines, clippy::trivially_copy_pass_by_ref, clippy::unnecessary_cast,
+    clippy::unreadable_literal, clippy::useless_conversion
 )]
 ";
 
@@ -273,6 +274,9 @@ impl Printer {
     }
 
     fn within(&self, e: &Expr, outer: Bin, right: bool) -> String {
+        if let (Bin::BitAnd | Bin::BitOr | Bin::BitXor, Expr::Int(n @ 0.., Some(ty))) = (outer, e) {
+            return format!("0x{n:x}_{}", self.ty(ty));
+        }
         let text = self.expr(e);
         let bare = match e {
             Expr::Bin(op, ..) => {

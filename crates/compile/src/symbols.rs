@@ -287,6 +287,7 @@ impl Symbols {
             Some(Holds::Truth) => (if word == 0 { "FALSE" } else { "TRUE" }).into(),
             Some(Holds::Signed) => (word as i64).to_string(),
             Some(Holds::Unsigned) => word.to_string(),
+            Some(Holds::Bits) => format!("16#{word:X}"),
             Some(Holds::Real) if ty == Type::Real => format!("{:?}", f32::from_bits(word as u32)),
             Some(Holds::Real) => format!("{:?}", f64::from_bits(word)),
             Some(Holds::Time) => Duration(word as i64).to_string(),

@@ -99,7 +99,8 @@ pub enum ExprKind {
     Compare(Cmp, Type, Box<Expr>, Box<Expr>),
     /// Comparison of two texts, by bytes.
     CompareText(Cmp, Box<Expr>, Box<Expr>),
-    /// From the first type to the second; out of range is a fault.
+    /// From the first type to the second; out of range is a fault, except where [`transfers`] is
+    /// true.
     Convert(Type, Type, Box<Expr>),
     /// Toward zero, from a real type to an integer type; out of range is a fault.
     Trunc(Type, Type, Box<Expr>),
@@ -378,18 +379,25 @@ fn shape(ty: Type) -> (u32, bool) {
         Type::Sint => (8, true),
         Type::Int => (16, true),
         Type::Dint => (32, true),
-        Type::Usint => (8, false),
-        Type::Uint => (16, false),
-        Type::Udint => (32, false),
-        Type::Ulint => (64, false),
+        Type::Usint | Type::Byte => (8, false),
+        Type::Uint | Type::Word => (16, false),
+        Type::Udint | Type::Dword => (32, false),
+        Type::Ulint | Type::Lword => (64, false),
         Type::Lint | Type::Time | Type::Real | Type::Lreal | Type::String(_) | Type::Fb(_) => (64, true),
     }
 }
 
+/// True if a conversion takes the lowest bits: between bit strings, and between these and whole
+/// numbers (IEC 61131-3:2013, 6.6.2.5.2).
+pub fn transfers(from: Type, to: Type) -> bool {
+    let whole = |ty: Type| ty.is_bits() || ty.is_integer();
+    (from.is_bits() || to.is_bits()) && whole(from) && whole(to)
+}
+
 /// Some value of the first type has no place in the second.
 pub fn narrows(from: Type, to: Type) -> bool {
-    if to == Type::Bool || to.is_real() {
-        return false; // not zero; rounded
+    if to == Type::Bool || to.is_real() || transfers(from, to) {
+        return false; // not zero; rounded; cut
     }
     if from.is_real() {
         return true;

@@ -206,6 +206,10 @@ pub fn call(f: Builtin, n: Num, args: &[u64]) -> Result<u64, FaultKind> {
             args.get(1..).unwrap_or(&[]).get(k).copied().ok_or(FaultKind::Range)
         }
         Builtin::Shl | Builtin::Shr | Builtin::Rol | Builtin::Ror => shift(f, n, arg(0), arg(1) as i64),
+        Builtin::BitAnd => Ok(arg(0) & arg(1)),
+        Builtin::BitOr => Ok(arg(0) | arg(1)),
+        Builtin::BitXor => Ok(arg(0) ^ arg(1)),
+        Builtin::Transfer => Ok(transfer(n, arg(0))),
         Builtin::Len
         | Builtin::Left
         | Builtin::Right
@@ -226,6 +230,21 @@ fn width(n: Num) -> Option<u32> {
         Num::U32 => Some(32),
         Num::U64 => Some(64),
         Num::Bool | Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::F32 | Num::F64 => None,
+    }
+}
+
+/// The lowest bits of a whole number, as a word of the kind (IEC 61131-3:2013, 6.6.2.5.2, binary
+/// transfer).
+fn transfer(n: Num, v: u64) -> u64 {
+    match n {
+        Num::Bool => u64::from(v != 0),
+        Num::I8 => i64::from(v as i8) as u64,
+        Num::I16 => i64::from(v as i16) as u64,
+        Num::I32 => i64::from(v as i32) as u64,
+        Num::U8 => u64::from(v as u8),
+        Num::U16 => u64::from(v as u16),
+        Num::U32 => u64::from(v as u32),
+        Num::I64 | Num::U64 | Num::F32 | Num::F64 => v,
     }
 }
 

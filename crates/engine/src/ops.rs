@@ -151,6 +151,14 @@ pub enum Builtin {
     Rol,
     /// `ROR(in, n)`: to the right in a ring.
     Ror,
+    /// AND of two values of an unsigned kind, bit by bit.
+    BitAnd,
+    /// OR, bit by bit.
+    BitOr,
+    /// XOR, bit by bit.
+    BitXor,
+    /// The lowest bits of a whole number of any kind, as the kind of the call.
+    Transfer,
     /// `LEN(s)`: the number of Unicode characters (INT).
     Len,
     /// `LEFT(s, n)`.

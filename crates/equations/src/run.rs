@@ -1,6 +1,7 @@
 //! A plain interpreter of the equations: they run beside the engine in the tests,
 //! and whoever reads them can try what they say.
 
+use g7_compile::tree::transfers;
 use g7_engine::{Addr, Arith, FaultKind, number, text};
 use g7_model::Type;
 
@@ -390,6 +391,8 @@ impl Run<'_> {
                 let x = self.number(x);
                 Given::Word(if num(*from) == num(*to) {
                     x
+                } else if transfers(*from, *to) {
+                    number::call(g7_engine::Builtin::Transfer, num(*to), &[x])?
                 } else {
                     number::convert(num(*from), num(*to), x)?
                 })

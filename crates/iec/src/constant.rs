@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// The type before the `#` of a literal, in upper or lower case.
 pub fn literal_type(word: &str) -> Option<Type> {
     let ty = type_named(word)?;
-    (ty.is_integer() || ty.is_real() || ty == Type::Bool).then_some(ty)
+    (ty.is_integer() || ty.is_bits() || ty.is_real() || ty == Type::Bool).then_some(ty)
 }
 
 /// A type by its name, in upper or in lower case.

@@ -21,6 +21,14 @@ pub enum Type {
     Udint,
     /// 64 bits, unsigned.
     Ulint,
+    /// A string of 8 bits.
+    Byte,
+    /// A string of 16 bits.
+    Word,
+    /// A string of 32 bits.
+    Dword,
+    /// A string of 64 bits.
+    Lword,
     /// IEEE 754, 32 bits.
     Real,
     /// IEEE 754, 64 bits.
@@ -136,6 +144,8 @@ pub enum Holds {
     Signed,
     /// Whole numbers from 0.
     Unsigned,
+    /// Bits that are no number.
+    Bits,
     /// Floating-point numbers.
     Real,
     /// A duration.
@@ -160,7 +170,7 @@ impl Type {
     pub const STRING: Type = Type::String(80);
 
     /// The elementary types (IEC 61131-3:2003, table 10), STRING with its usual length.
-    pub const ELEMENTARY: [Type; 13] = [
+    pub const ELEMENTARY: [Type; 17] = [
         Type::Bool,
         Type::Sint,
         Type::Int,
@@ -170,6 +180,10 @@ impl Type {
         Type::Uint,
         Type::Udint,
         Type::Ulint,
+        Type::Byte,
+        Type::Word,
+        Type::Dword,
+        Type::Lword,
         Type::Real,
         Type::Lreal,
         Type::Time,
@@ -188,6 +202,10 @@ impl Type {
             Type::Uint => ("UINT", 16, Holds::Unsigned),
             Type::Udint => ("UDINT", 32, Holds::Unsigned),
             Type::Ulint => ("ULINT", 64, Holds::Unsigned),
+            Type::Byte => ("BYTE", 8, Holds::Bits),
+            Type::Word => ("WORD", 16, Holds::Bits),
+            Type::Dword => ("DWORD", 32, Holds::Bits),
+            Type::Lword => ("LWORD", 64, Holds::Bits),
             Type::Real => ("REAL", 32, Holds::Real),
             Type::Lreal => ("LREAL", 64, Holds::Real),
             Type::Time => ("TIME", 64, Holds::Time),
@@ -197,16 +215,31 @@ impl Type {
         Some(Elementary { name, bits, holds })
     }
 
-    /// The bit string of the standard with as many bits as an unsigned type, which stands for it
-    /// here.
-    pub const fn bit_string(self) -> Option<&'static str> {
+    /// The bit string with as many bits as an integer type.
+    pub const fn bit_string(self) -> Option<Type> {
         match self {
-            Type::Usint => Some("BYTE"),
-            Type::Uint => Some("WORD"),
-            Type::Udint => Some("DWORD"),
-            Type::Ulint => Some("LWORD"),
+            Type::Usint | Type::Sint => Some(Type::Byte),
+            Type::Uint | Type::Int => Some(Type::Word),
+            Type::Udint | Type::Dint => Some(Type::Dword),
+            Type::Ulint | Type::Lint => Some(Type::Lword),
             _ => None,
         }
+    }
+
+    /// The type of whole numbers from 0 with as many bits as a bit string.
+    pub const fn unsigned(self) -> Option<Type> {
+        match self {
+            Type::Byte => Some(Type::Usint),
+            Type::Word => Some(Type::Uint),
+            Type::Dword => Some(Type::Udint),
+            Type::Lword => Some(Type::Ulint),
+            _ => None,
+        }
+    }
+
+    /// True for BYTE, WORD, DWORD and LWORD.
+    pub const fn is_bits(self) -> bool {
+        matches!(self.holds(), Some(Holds::Bits))
     }
 
     /// The name of the type, without the length of a text.
@@ -243,14 +276,14 @@ impl Type {
         matches!(self.holds(), Some(Holds::Signed | Holds::Unsigned))
     }
 
-    /// Smallest and largest value of an integer type.
+    /// Smallest and largest value of an integer type; of a bit string, read as a number from 0.
     pub const fn bounds(self) -> Option<(i128, i128)> {
         match self.elementary() {
             Some(Elementary { bits, holds: Holds::Signed, .. }) => {
                 let half = 1 << (bits - 1);
                 Some((-half, half - 1))
             }
-            Some(Elementary { bits, holds: Holds::Unsigned, .. }) => Some((0, (1 << bits) - 1)),
+            Some(Elementary { bits, holds: Holds::Unsigned | Holds::Bits, .. }) => Some((0, (1 << bits) - 1)),
             _ => None,
         }
     }
@@ -285,7 +318,7 @@ mod tests {
             assert_eq!(Type::named(ty.name()), Some(ty));
         }
         assert_eq!(Type::named("Int"), None);
-        assert_eq!(Type::names().count(), 23);
+        assert_eq!(Type::names().count(), 27);
         assert_eq!(
             (Type::STRING.to_string(), Type::String(9).to_string()),
             ("STRING".into(), "STRING(9)".into())
@@ -304,6 +337,8 @@ mod tests {
             (Type::Uint, Some((0, 65_535))),
             (Type::Udint, Some((0, 4_294_967_295))),
             (Type::Ulint, Some((0, 18_446_744_073_709_551_615))),
+            (Type::Word, Some((0, 65_535))),
+            (Type::Lword, Some((0, 18_446_744_073_709_551_615))),
             (Type::Bool, None),
             (Type::Real, None),
             (Type::Time, None),

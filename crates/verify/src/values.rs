@@ -47,7 +47,7 @@ fn of_word(t: &Tables, ty: Type, at: u32) -> Values {
     let (mut tried, mut whole) = (BTreeSet::from([init]), true);
     match row.map(|r| (r.holds, r.bits)) {
         Some((Holds::Truth, _)) => tried.extend([0, 1]),
-        Some((holds @ (Holds::Signed | Holds::Unsigned), bits)) if u32::from(bits) <= ALL => {
+        Some((holds @ (Holds::Signed | Holds::Unsigned | Holds::Bits), bits)) if u32::from(bits) <= ALL => {
             let (least, most) = range(holds, bits);
             tried.extend((least..=most).map(|v| v as u64));
         }
@@ -67,7 +67,11 @@ fn of_word(t: &Tables, ty: Type, at: u32) -> Values {
                     }
                     _ => {
                         let (least, most) = range(holds, bits);
-                        let c = if holds == Holds::Unsigned { i128::from(c) } else { i128::from(c as i64) };
+                        let c = if matches!(holds, Holds::Unsigned | Holds::Bits) {
+                            i128::from(c)
+                        } else {
+                            i128::from(c as i64)
+                        };
                         let near = [c - 1, c, c + 1].into_iter().filter(|v| (least..=most).contains(v));
                         tried.extend(near.map(|v| v as u64));
                     }
@@ -82,7 +86,7 @@ fn of_word(t: &Tables, ty: Type, at: u32) -> Values {
 fn range(holds: Holds, bits: u8) -> (i128, i128) {
     let bits = u32::from(bits.clamp(1, 64));
     match holds {
-        Holds::Unsigned => (0, (1i128 << bits) - 1),
+        Holds::Unsigned | Holds::Bits => (0, (1i128 << bits) - 1),
         _ => (-(1i128 << (bits - 1)), (1i128 << (bits - 1)) - 1),
     }
 }

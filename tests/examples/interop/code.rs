@@ -68,8 +68,11 @@ fn printed(chart: &Chart, language: Language) -> Option<Written> {
         Options { language, style: Style::Structured, room: Room::default(), name: "chart", source: "" };
     let printed = g7_codegen::print_as(chart.compiled.as_ref()?, &options, Parts::Whole);
     Some(match printed {
-        // A header and its code, as one file.
-        Ok(printed) => Ok(printed.files.iter().map(|f| f.text.as_str()).collect::<Vec<_>>().join("\n")),
+        // A header and its code, as one file: the code need not ask for the header.
+        Ok(printed) => {
+            let whole = printed.files.iter().map(|f| f.text.as_str()).collect::<Vec<_>>().join("\n");
+            Ok(whole.replace("#include \"chart.h\"\n", ""))
+        }
         Err(lost) => {
             let first = lost.first().map_or("no reason", |p| p.what.as_str());
             Err(format!("C and Rust, refused by G7: {first}"))

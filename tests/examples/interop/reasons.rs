@@ -9,7 +9,7 @@ pub(crate) fn nameless(reason: &str) -> String {
 }
 
 /// Words of a reason or of the file, and who is right. The first row that fits counts.
-const RIGHT: [(&[&str], &str); 19] = [
+const RIGHT: [(&[&str], &str); 23] = [
     (&["refused by G7", "which IEC 61131-3 does not have"], "G7: the language has no such construct"),
     (&["refused by G7", "the meta-model"], "G7: the meta-model has no such thing"),
     (&["refused by G7", "stability"], "G7: Ladder has no loop"),
@@ -23,6 +23,13 @@ const RIGHT: [(&[&str], &str); 19] = [
     (&["IronPLC on SFC text", "'#'"], "G7: IronPLC reads no time at L and D"),
     (&["IronPLC on SFC text", "P4007"], "G7: IronPLC knows no S.X and S.T of a step"),
     (&["IronPLC on SFC text"], "G7: IronPLC reads a part of SFC text and runs none of it"),
+    (
+        &["matiec on IL", "push-back overflow"],
+        "G7: the scanner of matiec has no room for so long a body of IL",
+    ),
+    (&["matiec", "Initial value has incompatible"], "G7: matiec takes no LREAL beyond the range of REAL"),
+    (&["matiec on SFC text", "it says nothing"], "G7: matiec ends with a signal at a STRING with a length"),
+    (&["matiec on SFC text", "not declared in this scope"], "G7: matiec loses a STRING with a length"),
     (&["matiec", "unknown error"], "not judged: matiec names no reason"),
     (
         &["run:", "it ends with a signal"],

@@ -37,6 +37,9 @@ pub(super) fn assignment(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {
             if rng.percent(4) {
                 return format!("{name} := {name} + 1");
             }
+            if rng.percent(2) {
+                return format!("{name}.{} := {}", rng.below(3), sight.boolean(rng, 1));
+            }
             format!("{name} := {}", sight.int(rng, ty, 1))
         }
         2 if !to.reals.is_empty() => {

@@ -111,14 +111,43 @@ impl Sight {
     }
 
     pub(super) fn atom(&self, rng: &mut Rng) -> String {
-        let from = match rng.weighted(&[40, 20, 22, 8, 3]) {
+        let from = match rng.weighted(&[40, 20, 22, 8, 2, 3]) {
             0 => &self.inputs,
             1 => &self.bools,
             2 => &self.steps,
             3 => return self.comparison(rng, 0),
+            4 if !self.ints.is_empty() => return self.bit(rng),
             _ => return rng.one(["TRUE", "FALSE"]).to_owned(),
         };
         rng.pick(from).or(self.inputs.first()).cloned().unwrap_or_else(|| "FALSE".to_owned())
+    }
+
+    /// A bit of a variable that is a whole number; members of blocks have no bits.
+    fn bit(&self, rng: &mut Rng) -> String {
+        let variables: Vec<&(String, Type)> = self.ints.iter().filter(|(n, _)| !n.ends_with(".CV")).collect();
+        let Some((name, ty)) = rng.pick(&variables).copied().cloned() else { return "TRUE".to_owned() };
+        let bits = ty.elementary().map_or(8, |row| usize::from(row.bits));
+        // The lowest ones change most.
+        let most = if rng.percent(75) { 3 } else { bits };
+        format!("{name}.{}", rng.below(most))
+    }
+
+    /// A whole number from 0 to 127, made of bit strings.
+    fn masked(&self, rng: &mut Rng, ty: Type) -> String {
+        let Some((name, from)) = rng.pick(&self.ints).cloned() else { return "0".to_owned() };
+        let string = rng.one(["BYTE", "WORD", "DWORD", "LWORD"]);
+        let bits = format!("{from}_TO_{string}({name})");
+        let mask = format!("16#{:X}", rng.below(128));
+        let joined = match rng.below(5) {
+            0 => format!("{bits} and {mask}"),
+            1 => format!("not {bits} and {mask}"),
+            2 => format!("({bits} xor 16#55) and {mask}"),
+            3 => format!("SHR({bits}, {}) and {mask}", rng.below(6)),
+            _ => format!("({bits} or WORD#16#8040) and {string}#{mask}"),
+        };
+        // A BYTE beside a WORD is a WORD.
+        let string = if joined.contains("WORD#16#8040") && string == "BYTE" { "WORD" } else { string };
+        format!("{string}_TO_{ty}({joined})")
     }
 
     pub(super) fn comparison(&self, rng: &mut Rng, depth: usize) -> String {
@@ -173,7 +202,8 @@ impl Sight {
                 _ => format!("({name} + {})", self.int(rng, ty, d)),
             };
         }
-        match rng.below(9) {
+        match rng.below(10) {
+            9 if rng.percent(50) => self.masked(rng, ty),
             0 => name,
             1 => format!("({name} mod 7)"),
             2 => format!("MIN({name}, {small})"),

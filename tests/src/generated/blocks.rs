@@ -55,7 +55,14 @@ fn putter(place: &str, ty: Type) -> String {
         Type::Real => format!("put(of_float({place}));"),
         Type::Lreal => format!("put(of_double({place}));"),
         Type::Time => format!("put(of_time({place}));"),
-        Type::Usint | Type::Uint | Type::Udint | Type::Ulint => format!("put((uint64_t){place});"),
+        Type::Usint
+        | Type::Uint
+        | Type::Udint
+        | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword => format!("put((uint64_t){place});"),
         _ => format!("put((uint64_t)(int64_t){place});"),
     }
 }

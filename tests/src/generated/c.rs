@@ -52,10 +52,10 @@ fn c_type(ty: Type) -> &'static str {
         Type::Sint => "int8_t",
         Type::Int => "int16_t",
         Type::Dint => "int32_t",
-        Type::Usint => "uint8_t",
-        Type::Uint => "uint16_t",
-        Type::Udint => "uint32_t",
-        Type::Ulint => "uint64_t",
+        Type::Usint | Type::Byte => "uint8_t",
+        Type::Uint | Type::Word => "uint16_t",
+        Type::Udint | Type::Dword => "uint32_t",
+        Type::Ulint | Type::Lword => "uint64_t",
         _ => "int64_t",
     }
 }
@@ -77,7 +77,14 @@ fn putter(place: &str, v: &Variable) -> String {
         Type::Real => format!("put(of_float({place}));"),
         Type::Lreal => format!("put(of_double({place}));"),
         Type::String(cap) => format!("put_text({place}, {cap});"),
-        Type::Usint | Type::Uint | Type::Udint | Type::Ulint => format!("put((uint64_t){place});"),
+        Type::Usint
+        | Type::Uint
+        | Type::Udint
+        | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword => format!("put((uint64_t){place});"),
         _ => format!("put((uint64_t)(int64_t){place});"),
     }
 }

@@ -271,7 +271,16 @@ impl Program {
                 Some(Type::Time) => format!("put(of_time({c}));"),
                 Some(Type::String(_)) | None => "put(0);".to_owned(),
                 Some(Type::Bool) => format!("put({c} ? 1 : 0);"),
-                Some(Type::Usint | Type::Uint | Type::Udint | Type::Ulint) => format!("put((uint64_t){c});"),
+                Some(
+                    Type::Usint
+                    | Type::Uint
+                    | Type::Udint
+                    | Type::Ulint
+                    | Type::Byte
+                    | Type::Word
+                    | Type::Dword
+                    | Type::Lword,
+                ) => format!("put((uint64_t){c});"),
                 Some(_) => format!("put((uint64_t)(int64_t){c});"),
             };
             let _ = writeln!(text, "  {line}");

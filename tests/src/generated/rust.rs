@@ -59,7 +59,14 @@ fn putter(place: &str, v: &Variable) -> String {
             format!("w.put(if {place}.is_nan() {{ 0x7ff8_0000_0000_0000 }} else {{ {place}.to_bits() }});")
         }
         Type::String(_) => format!("w.put_text(&{place});"),
-        Type::Usint | Type::Uint | Type::Udint | Type::Ulint => format!("w.put({place} as u64);"),
+        Type::Usint
+        | Type::Uint
+        | Type::Udint
+        | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword => format!("w.put({place} as u64);"),
         _ => format!("w.put({place} as i64 as u64);"),
     }
 }

@@ -2,6 +2,7 @@
 
 use g7_model::{BinaryOp, Type};
 
+use super::bits;
 use super::value::{NaiveFault, Run, Typed, Value, bad, binary, common, cut, negate};
 
 /// Calls a standard function or a conversion by its name, in upper or lower case.
@@ -53,7 +54,7 @@ pub(super) fn call(name: &str, args: &[Typed]) -> Run<Typed> {
             Some(x) => alike(x, rest),
             None => Err(NaiveFault::Index),
         },
-        ("NOT", [x]) => Ok(Typed::bool(!x.truth()?)),
+        ("NOT", [x]) => bits::complement(x).unwrap_or_else(|| Ok(Typed::bool(!x.truth()?))),
         ("SHL" | "SHR" | "ROL" | "ROR", [bits, by]) => shifted(&name, bits, by),
         ("TRUNC", [x]) => rounded(&truncated(x)?, Type::Dint),
         _ => text(&name, args),
@@ -87,8 +88,9 @@ fn shifted(name: &str, bits: &Typed, by: &Typed) -> Run<Typed> {
 fn type_named(name: &str) -> Option<Type> {
     use Type as T;
     let all = [T::Bool, T::Sint, T::Int, T::Dint, T::Lint, T::Usint, T::Uint, T::Udint, T::Ulint];
+    let all = all.into_iter().chain([T::Byte, T::Word, T::Dword, T::Lword]);
     let more = [T::Real, T::Lreal, T::Time, T::String(80)];
-    all.into_iter().chain(more).find(|t| t.to_string() == name)
+    all.chain(more).find(|t| t.to_string() == name)
 }
 
 fn real(x: &Typed, single: fn(f32) -> f32, double: fn(f64) -> f64) -> Run<Typed> {
@@ -145,7 +147,10 @@ fn convert(from: Type, to: Type, x: &Typed) -> Run<Typed> {
     let done = match (&v, to) {
         (Value::Str(s), _) => return from_text(s, to),
         (_, Type::String(n)) => Value::Str(cut(&as_text(&v)?, usize::from(n))),
-        (Value::Bool(b), t) if t.is_integer() => Value::Int(i128::from(*b)),
+        (Value::Int(n), t) if from.is_bits() && t != Type::Bool || t.is_bits() => {
+            Value::Int(bits::transferred(*n, t))
+        }
+        (Value::Bool(b), t) if t.is_integer() || t.is_bits() => Value::Int(i128::from(*b)),
         (Value::Bool(b), Type::Real) => Value::Real(if *b { 1.0 } else { 0.0 }),
         (Value::Bool(b), Type::Lreal) => Value::Lreal(if *b { 1.0 } else { 0.0 }),
         (Value::Int(n), Type::Bool) => Value::Bool(*n != 0),

@@ -6,6 +6,7 @@ use g7_model::{
     Arg, BinaryOp, Expr, ExprKind, Function, Literal, Operands, Path, StandardFunction, Type, UnaryOp,
 };
 
+use super::bits;
 use super::builtin;
 use super::model::{Model, ScopeId, StepId, VarId, is_name};
 use super::resolve::Ref;
@@ -48,7 +49,10 @@ impl<'a> Exec<'a> {
                 Some(r) => self.read(&r),
                 None => bad(format!("%{d} is nothing")),
             },
-            ExprKind::Unary(UnaryOp::Not, x) => Ok(Typed::bool(!self.truth(scope, x)?)),
+            ExprKind::Unary(UnaryOp::Not, x) => {
+                let x = self.eval(scope, x)?;
+                bits::complement(&x).unwrap_or_else(|| Ok(Typed::bool(!x.truth()?)))
+            }
             ExprKind::Unary(UnaryOp::Neg, x) => negate(&self.eval(scope, x)?),
             ExprKind::Unary(UnaryOp::Rise, _) => Ok(Typed::bool(self.edge(e).is_some_and(|(b, h)| !b && h))),
             ExprKind::Unary(UnaryOp::Fall, _) => Ok(Typed::bool(self.edge(e).is_some_and(|(b, h)| b && !h))),
@@ -106,6 +110,7 @@ impl<'a> Exec<'a> {
         match (rest, v) {
             ([], _) => Some(Ok(Typed::of(*ty, v.clone()))),
             ([member], Value::Fb(f)) => Some(member_of(f, &member.text)),
+            ([k], Value::Int(n)) => Some(Ok(Typed::bool(bits::bit(*n, k.text.parse().ok()?)))),
             _ => None,
         }
     }
@@ -116,6 +121,10 @@ impl<'a> Exec<'a> {
             Ref::Member(v, member) => match &self.s.vars[*v] {
                 Value::Fb(f) => return member_of(f, member),
                 _ => return bad("a member of no block"),
+            },
+            Ref::Bit(v, k) => match &self.s.vars[*v] {
+                Value::Int(n) => Typed::bool(bits::bit(*n, *k)),
+                _ => return bad("a bit of no number"),
             },
             Ref::Active(step) => Typed::bool(self.s.is_active(self.m, *step)),
             Ref::Time(step) if self.m.rules.scan_clock => Typed::int(self.s.scans(self.m, *step).into()),
@@ -248,6 +257,10 @@ impl<'a> Exec<'a> {
 /// True if the left operand decides, so that the right one is not evaluated (decision 23).
 fn decides(op: BinaryOp, left: &Typed) -> Run<bool> {
     let is_bool = left.ty == Some(Type::Bool);
+    // A literal may stand for a bit string.
+    if left.ty.is_none_or(Type::is_bits) {
+        return Ok(false);
+    }
     match op {
         BinaryOp::Or => left.truth(),
         BinaryOp::And | BinaryOp::Dot => left.truth().map(|b| !b),

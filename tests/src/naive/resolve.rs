@@ -9,6 +9,7 @@ use super::model::{FILE, Model, ScopeId, StepId, VarId};
 pub(super) enum Ref {
     Var(VarId),
     Member(VarId, String),
+    Bit(VarId, u32),
     Active(StepId),
     Time(StepId),
     Seconds(StepId),
@@ -73,7 +74,11 @@ impl Model {
             },
             [instance, member] => {
                 let &v = s.vars.get(instance)?;
-                matches!(self.vars[v].ty, Type::Fb(_)).then(|| Ref::Member(v, member.to_owned()))
+                let ty = self.vars[v].ty;
+                if ty.is_bits() || ty.is_integer() {
+                    return member.parse().ok().map(|k| Ref::Bit(v, k));
+                }
+                matches!(ty, Type::Fb(_)).then(|| Ref::Member(v, member.to_owned()))
             }
             _ => None,
         }
@@ -130,6 +135,9 @@ impl Model {
         let name = name.to_ascii_uppercase();
         if let Some(&v) = self.addresses.get(&name) {
             return Some(Ref::Var(v));
+        }
+        if let Some((word, bit)) = name.split_once(":X") {
+            return Some(Ref::Bit(*self.addresses.get(word)?, bit.parse().ok()?));
         }
         let (body, time) = match name.strip_suffix(".T") {
             Some(body) => (body, true),

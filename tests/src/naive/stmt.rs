@@ -2,6 +2,7 @@
 
 use g7_model::{Arg, Block, CaseArm, Expr, ExprKind, Path, Stmt, StmtKind, Type, Work};
 
+use super::bits;
 use super::exec::{Exec, Frame};
 use super::model::ScopeId;
 use super::resolve::Ref;
@@ -172,6 +173,13 @@ impl Exec<'_> {
                 let Value::Fb(f) = &mut self.s.vars[v] else { return bad("a member of no block") };
                 set_member(f, &member, value)
             }
+            Some(Ref::Bit(v, k)) => {
+                self.written.push(v);
+                let on = value.truth()?;
+                let Value::Int(n) = &mut self.s.vars[v] else { return bad("a bit of no number") };
+                *n = bits::replaced(self.m.vars[v].ty, *n, k, on);
+                Ok(())
+            }
             // `%X12 := TRUE` of PRE.
             Some(Ref::Active(step)) => {
                 let set = value.to(Type::Bool)? == Value::Bool(true);
@@ -188,6 +196,10 @@ impl Exec<'_> {
         match (rest, &mut *slot) {
             ([], _) => Some(value.to(*ty).map(|v| *slot = v)),
             ([member], Value::Fb(f)) => Some(set_member(f, &member.text, value)),
+            ([k], Value::Int(n)) => {
+                let k = k.text.parse().ok()?;
+                Some(value.truth().map(|on| *n = bits::replaced(*ty, *n, k, on)))
+            }
             _ => None,
         }
     }

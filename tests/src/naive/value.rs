@@ -166,7 +166,11 @@ pub(super) fn zero(ty: Type) -> Value {
         | Type::Usint
         | Type::Uint
         | Type::Udint
-        | Type::Ulint => Value::Int(0),
+        | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword => Value::Int(0),
     }
 }
 
@@ -189,6 +193,11 @@ pub(super) fn common_integer(a: Type, b: Type) -> Run<Type> {
     }
 }
 
+/// True if values are whole numbers, or bits that stand for one.
+fn is_whole(ty: Type) -> bool {
+    ty.is_integer() || ty.is_bits()
+}
+
 /// The common type of two operands; `None` if both are literals.
 pub(super) fn common(a: &Typed, b: &Typed) -> Run<Option<Type>> {
     let literal_real = |t: &Typed| t.ty.is_none() && matches!(t.v, Value::Lreal(_));
@@ -202,12 +211,17 @@ pub(super) fn common(a: &Typed, b: &Typed) -> Run<Option<Type>> {
             }
         }
         (Some(x), Some(y)) => match (x, y) {
-            (x, y) if x.is_integer() && y.is_integer() => Ok(Some(common_integer(x, y)?)),
+            (x, y) if is_whole(x) && is_whole(y) && !(x.is_bits() && y.is_bits()) => {
+                Ok(Some(common_integer(x, y)?))
+            }
             (Type::Lreal, y) if y.is_integer() || y.is_real() => Ok(Some(Type::Lreal)),
             (x, Type::Lreal) if x.is_integer() || x.is_real() => Ok(Some(Type::Lreal)),
             (Type::Real, y) if y.is_integer() || y == Type::Real => Ok(Some(Type::Real)),
             (x, Type::Real) if x.is_integer() => Ok(Some(Type::Real)),
             (Type::String(_), Type::String(_)) => Ok(Some(Type::String(u16::MAX))),
+            (x, y) if x.is_bits() && y.is_bits() => {
+                Ok(Some(if super::bits::width(x) < super::bits::width(y) { y } else { x }))
+            }
             (x, y) if x == y => Ok(Some(x)),
             (x, y) => bad(format!("{x} and {y} do not meet")),
         },
@@ -218,6 +232,9 @@ pub(super) fn common(a: &Typed, b: &Typed) -> Run<Option<Type>> {
 pub(super) fn binary(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Typed> {
     use BinaryOp as B;
     let boolean = |t: &Typed| t.ty == Some(Type::Bool);
+    if let Some(done) = super::bits::joined(op, a, b) {
+        return done;
+    }
     match op {
         B::Or => Ok(Typed::bool(a.truth()? | b.truth()?)),
         B::Xor => Ok(Typed::bool(a.truth()? ^ b.truth()?)),
@@ -261,7 +278,7 @@ fn arithmetic(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Typed> {
     if let Some(t) = with_time(op, a, b)? {
         return Ok(t);
     }
-    let ty = common(a, b)?;
+    let ty = common(a, b)?.map(|ty| ty.unsigned().unwrap_or(ty));
     let (x, y) = match ty {
         // A literal that does not fit the type of the other operand overflows.
         Some(t) => (a.to(t)?, b.to(t)?),

@@ -1,7 +1,7 @@
 //! The common part of Structured Text, Instruction List and Ladder: the
 //! equations of a chart with names, before they are printed in one of them.
 
-use g7_model::Nanos;
+use g7_model::{Nanos, Said, Type, say};
 
 /// Parts of a conjunction or disjunction that are compared with each other; in a longer one a part
 /// may stand twice.
@@ -12,6 +12,8 @@ const SHORT: usize = 16;
 pub(crate) enum Ex {
     Bool(bool),
     Int(i128),
+    /// A constant bit string of a type.
+    Bits(Type, u64),
     Real(f64),
     Time(Nanos),
     Var(String),
@@ -35,6 +37,13 @@ impl Ex {
         match (sign, &a, &b) {
             ("+", Ex::Int(x), Ex::Int(y)) => Ex::Int(x + y),
             ("-", Ex::Int(x), Ex::Int(y)) => Ex::Int(x - y),
+            // matiec takes 0 and 1 for BOOL, which has no order there.
+            ("=", Ex::Int(x), Ex::Int(y)) => Ex::Bool(x == y),
+            ("<>", Ex::Int(x), Ex::Int(y)) => Ex::Bool(x != y),
+            ("<", Ex::Int(x), Ex::Int(y)) => Ex::Bool(x < y),
+            ("<=", Ex::Int(x), Ex::Int(y)) => Ex::Bool(x <= y),
+            (">", Ex::Int(x), Ex::Int(y)) => Ex::Bool(x > y),
+            (">=", Ex::Int(x), Ex::Int(y)) => Ex::Bool(x >= y),
             // IronPLC has no MAX of times.
             (">=", _, Ex::Call(name, least))
                 if name == "MAX" && matches!(least.last(), Some(Ex::Time(_))) =>
@@ -125,7 +134,7 @@ impl Ex {
     pub(crate) fn walk(&self, f: &mut dyn FnMut(&Ex)) {
         f(self);
         match self {
-            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => {}
+            Ex::Bool(_) | Ex::Int(_) | Ex::Bits(..) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => {}
             Ex::Index(_, e) | Ex::Not(e) | Ex::Neg(e) => e.walk(f),
             Ex::And(list) | Ex::Or(list) | Ex::Call(_, list) => list.iter().for_each(|e| e.walk(f)),
             Ex::Xor(a, b) | Ex::Op(_, a, b) => {
@@ -138,7 +147,7 @@ impl Ex {
     /// The expressions that it is made of, in their order.
     pub(crate) fn inner_mut(&mut self) -> Vec<&mut Ex> {
         match self {
-            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => Vec::new(),
+            Ex::Bool(_) | Ex::Int(_) | Ex::Bits(..) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) => Vec::new(),
             Ex::Index(_, e) | Ex::Not(e) | Ex::Neg(e) => vec![e],
             Ex::And(list) | Ex::Or(list) | Ex::Call(_, list) => list.iter_mut().collect(),
             Ex::Xor(a, b) | Ex::Op(_, a, b) => vec![a, b],
@@ -219,6 +228,11 @@ pub(crate) enum Class {
     Output,
     Retain,
     Internal,
+}
+
+/// The refusal of a variable whose type a family of controllers lacks, or has otherwise.
+pub(crate) fn not_printed(ty: &str, family: &'static str) -> Said {
+    say!("a variable of type {}, which is not printed for {}", Said::foreign(ty), Said::foreign(family))
 }
 
 /// A declaration.

@@ -260,7 +260,13 @@ impl Printer {
                 self.with(word, b);
             }
             Ex::Call(name, args) => self.function(name, args),
-            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {}
+            Ex::Bool(_)
+            | Ex::Int(_)
+            | Ex::Bits(..)
+            | Ex::Real(_)
+            | Ex::Time(_)
+            | Ex::Var(_)
+            | Ex::Index(..) => {}
         }
     }
 
@@ -320,7 +326,7 @@ fn flat(e: &Ex) -> bool {
 /// An operand that stands behind an operator as it is.
 fn operand(e: &Ex) -> Option<String> {
     match e {
-        Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {
+        Ex::Bool(_) | Ex::Int(_) | Ex::Bits(..) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {
             Some(expression(e))
         }
         _ => None,

@@ -310,9 +310,13 @@ impl Maker {
 
     fn operand_as(&mut self, e: &Ex, ty: &str) -> String {
         match e {
-            Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_) | Ex::Index(..) => {
-                expression(e)
-            }
+            Ex::Bool(_)
+            | Ex::Int(_)
+            | Ex::Bits(..)
+            | Ex::Real(_)
+            | Ex::Time(_)
+            | Ex::Var(_)
+            | Ex::Index(..) => expression(e),
             Ex::And(_) | Ex::Or(_) | Ex::Not(_) | Ex::Xor(..) => expression(&self.kept(e)),
             e => {
                 let name = self.variables.memory(ty);

@@ -42,6 +42,10 @@ pub(crate) fn type_name(ty: Type) -> &'static str {
         Type::Uint => "UINT",
         Type::Udint => "UDINT",
         Type::Ulint => "ULINT",
+        Type::Byte => "BYTE",
+        Type::Word => "WORD",
+        Type::Dword => "DWORD",
+        Type::Lword => "LWORD",
         Type::Real => "REAL",
         Type::Lreal => "LREAL",
         Type::Time => "TIME",
@@ -57,6 +61,7 @@ pub(crate) fn literal(ty: Type, word: u64) -> Ex {
         Type::Real => Ex::Real(f64::from(f32::from_bits(word as u32))),
         Type::Lreal => Ex::Real(f64::from_bits(word)),
         Type::Ulint => Ex::Int(word.into()),
+        Type::Byte | Type::Word | Type::Dword | Type::Lword => Ex::Bits(ty, word),
         Type::Time => Ex::Time(Nanos::new(word as i64)),
         _ => Ex::Int((word as i64).into()),
     }

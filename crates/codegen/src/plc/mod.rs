@@ -37,7 +37,7 @@ pub use ascii::ascii;
 use dialect::Dialect;
 use g7_compile::Compiled;
 use g7_engine::{Addr, StepId};
-use g7_model::{Problem, Severity};
+use g7_model::{Problem, Severity, codes, say};
 
 /// The form of the equations.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -165,6 +165,10 @@ pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Resul
         return Err(problems);
     }
     let place = compiled.symbols.charts.first().map_or(g7_model::Span::default(), |c| c.at);
+    if block.variables.is_empty() && block.parts.iter().all(Vec::is_empty) {
+        let what = say!("there is nothing to print: neither a step nor a variable nor a body");
+        return Err(vec![Problem::new(&codes::NOT_CARRIED, place, what)]);
+    }
     let mut beside = Vec::new();
     let text = match form {
         Form::St => st::print(&block),

@@ -193,6 +193,7 @@ fn tightness(e: &Ex) -> u8 {
     match e {
         Ex::Or(_) => 1,
         Ex::Xor(..) => 2,
+        Ex::Call(name, _) if is_bitwise(name) => 1,
         Ex::And(_) => 3,
         Ex::Op("=" | "<>", ..) => 4,
         Ex::Op("<" | "<=" | ">" | ">=", ..) => 5,
@@ -204,6 +205,11 @@ fn tightness(e: &Ex) -> u8 {
         Ex::Real(x) if *x < 0.0 => 8,
         _ => 10,
     }
+}
+
+/// The functions of bit strings that are operators in Structured Text.
+fn is_bitwise(name: &str) -> bool {
+    matches!(name, "AND" | "OR" | "XOR")
 }
 
 /// An expression of Structured Text.
@@ -220,6 +226,7 @@ pub(crate) fn expression(e: &Ex) -> String {
         Ex::Bool(true) => "TRUE".into(),
         Ex::Bool(false) => "FALSE".into(),
         Ex::Int(n) => n.to_string(),
+        Ex::Bits(ty, word) => format!("{}#16#{word:X}", ty.name()),
         Ex::Real(x) => real(*x),
         Ex::Time(amount) => time(*amount),
         Ex::Var(name) => name.clone(),
@@ -234,6 +241,7 @@ pub(crate) fn expression(e: &Ex) -> String {
             let t = tightness(e);
             format!("{} {sign} {}", within(a, t), within(b, t + 1))
         }
+        Ex::Call(name, args) if is_bitwise(name) => list(args, &format!(" {name} "), 4),
         Ex::Call(name, args) => {
             let args: Vec<String> = args.iter().map(expression).collect();
             format!("{name}({})", args.join(", "))

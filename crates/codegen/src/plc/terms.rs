@@ -162,11 +162,21 @@ impl Scan<'_> {
             }
             _ => (x, y),
         };
+        // Bit strings are only equal or not; their order is that of numbers.
+        let (x, y) = match ty.unsigned().filter(|_| !matches!(sign, "=" | "<>")) {
+            Some(number) => (as_number(x, ty, number), as_number(y, ty, number)),
+            None => (x, y),
+        };
         match (sign, &x, &y) {
             ("=", _, Ex::Bool(true)) | ("<>", _, Ex::Bool(false)) => x,
             ("=", _, Ex::Bool(false)) | ("<>", _, Ex::Bool(true)) => x.not(),
             ("<>", ..) if ty == Type::Bool => x.xor(y),
             ("=", ..) if ty == Type::Bool => x.xor(y).not(),
+            // FALSE is below TRUE; Instruction List of matiec does not know that.
+            ("<", ..) if ty == Type::Bool => x.not().and(y),
+            ("<=", ..) if ty == Type::Bool => x.not().or(y),
+            (">", ..) if ty == Type::Bool => x.and(y.not()),
+            (">=", ..) if ty == Type::Bool => x.or(y.not()),
             _ => Ex::op(sign, x, y),
         }
     }
@@ -266,15 +276,13 @@ impl Scan<'_> {
         }
         let e = self.ex(x);
         match (&e, from, to) {
-            (_, _, Type::Bool) => {
-                let zero = if from.is_real() { Ex::Real(0.0) } else { Ex::Int(0) };
-                Ex::op("<>", e, zero)
-            }
+            (_, _, Type::Bool) => Ex::op("<>", e, literal(from, 0)),
             // Not every system has conversions of constants to all types.
             (Ex::Bool(b), ..) if to.is_real() => Ex::Real(f64::from(u8::from(*b))),
-            (Ex::Bool(b), ..) => Ex::Int((*b).into()),
+            (Ex::Bool(b), ..) => literal(to, (*b).into()),
+            (Ex::Bits(_, word), ..) if to.is_bits() => literal(to, *word),
             (Ex::Int(n), ..) if to.is_real() => Ex::Real(*n as f64),
-            (Ex::Int(_), ..) => e,
+            (Ex::Int(_), ..) if !to.is_bits() => e,
             _ => Ex::call(format!("{}_TO_{}", type_name(from), type_name(to)), vec![e]),
         }
     }
@@ -294,7 +302,7 @@ impl Scan<'_> {
         {
             *k = narrow(std::mem::replace(k, Ex::Bool(false)));
         }
-        Ex::call(format!("{f:?}").to_uppercase(), list)
+        Ex::call(format!("{f:?}").to_uppercase().trim_start_matches("BIT"), list)
     }
 }
 
@@ -302,24 +310,27 @@ impl Scan<'_> {
     /// Shifts are those of bit strings. What they do by the width and more differs among systems,
     /// so it is never asked for.
     fn shifted(&mut self, f: Builtin, ty: Type, bits: &Expr, count: &Expr) -> Ex {
-        let (Some(string), Some(row)) = (ty.bit_string(), ty.elementary()) else {
+        let string = ty.bit_string().filter(|_| !ty.is_bits()).unwrap_or(ty);
+        let (true, Some(row)) = (string.is_bits(), ty.elementary()) else {
             return self.cannot_ex(say!("a shift of this type"));
         };
         let width = i128::from(row.bits);
-        let x = Ex::call(format!("{}_TO_{string}", row.name), vec![self.ex(bits)]);
+        let as_bits = |e: Ex| if ty == string { e } else { Ex::call(format!("{ty}_TO_{string}"), vec![e]) };
+        let x = as_bits(self.ex(bits));
         let by = |n: Ex| {
             let shifted = Ex::call(format!("{f:?}").to_uppercase(), vec![x, n]);
-            Ex::call(format!("{string}_TO_{}", row.name), vec![shifted])
+            if ty == string { shifted } else { Ex::call(format!("{string}_TO_{ty}"), vec![shifted]) }
         };
+        let nothing = literal(ty, 0);
         let ring = matches!(f, Builtin::Rol | Builtin::Ror);
         match narrow(self.ex(count)) {
             Ex::Int(n) if ring => by(Ex::Int(n % width)),
-            Ex::Int(n) if n >= width => Ex::Int(0),
+            Ex::Int(n) if n >= width => nothing,
             Ex::Int(n) => by(Ex::Int(n)),
             n if ring => by(Ex::op("MOD", n, Ex::Int(width))),
             n => {
                 let beyond = Ex::op(">=", n.clone(), Ex::Int(width));
-                Ex::call("SEL", vec![beyond, by(Ex::call("MIN", vec![n, Ex::Int(width - 1)])), Ex::Int(0)])
+                Ex::call("SEL", vec![beyond, by(Ex::call("MIN", vec![n, Ex::Int(width - 1)])), nothing])
             }
         }
     }
@@ -328,6 +339,14 @@ impl Scan<'_> {
 /// An integer type.
 fn whole(ty: Type) -> bool {
     !ty.is_real() && !matches!(ty, Type::Bool | Type::Time | Type::String(_) | Type::Fb(_))
+}
+
+/// A bit string as a number from 0.
+fn as_number(e: Ex, ty: Type, number: Type) -> Ex {
+    match e {
+        Ex::Bits(_, word) => Ex::Int(word.into()),
+        e => Ex::call(format!("{ty}_TO_{number}"), vec![e]),
+    }
 }
 
 fn unequal(ty: Type, a: Ex, b: Ex) -> Ex {

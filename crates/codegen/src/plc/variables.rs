@@ -69,6 +69,7 @@ impl Variables {
             Ex::Bool(_) | Ex::Not(_) | Ex::And(_) | Ex::Or(_) | Ex::Xor(..) => "BOOL",
             Ex::Op("=" | "<>" | "<" | "<=" | ">" | ">=", ..) => "BOOL",
             Ex::Int(_) => "DINT",
+            Ex::Bits(ty, _) => ty.name(),
             Ex::Real(_) => "LREAL",
             Ex::Time(_) => "TIME",
             Ex::Var(n) if n.ends_with(".ET") || n.ends_with(".PT") => "TIME",

@@ -3,11 +3,11 @@
 //! Code is written into a [`Buf`] with jumps counted from its own start; `pieces`
 //! moves it to its place in the table.
 
-use g7_engine::{Addr, Op};
+use g7_engine::{Addr, Builtin, Op};
 use g7_model::{Span, Type};
 
 use super::words::num;
-use crate::tree::{Clock, Expr, ExprKind, Gate, Piece, Stmt, StmtKind, Target};
+use crate::tree::{Clock, Expr, ExprKind, Gate, Piece, Stmt, StmtKind, Target, transfers};
 
 /// Gates and complements within one another that are written as jumps; deeper ones are worked out on
 /// the stack.
@@ -132,6 +132,9 @@ impl Buf {
             ExprKind::Not(x) => self.one(x, Op::Not, at),
             ExprKind::Neg(n, x) => self.one(x, Op::Neg(num(*n)), at),
             ExprKind::Convert(from, to, x) if num(*from) == num(*to) => self.expr(x),
+            ExprKind::Convert(from, to, x) if transfers(*from, *to) => {
+                self.one(x, Op::Call(Builtin::Transfer, num(*to), 1), at);
+            }
             ExprKind::Convert(from, to, x) => self.one(x, Op::Convert(num(*from), num(*to)), at),
             ExprKind::Trunc(from, to, x) => self.one(x, Op::Trunc(num(*from), num(*to)), at),
             ExprKind::FromText(n, x) => self.one(x, Op::FromText(num(*n)), at),

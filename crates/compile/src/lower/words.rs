@@ -142,6 +142,10 @@ pub fn words_of(ty: Type) -> u32 {
         | Type::Uint
         | Type::Udint
         | Type::Ulint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Lword
         | Type::Real
         | Type::Lreal
         | Type::Time => 1,
@@ -156,10 +160,10 @@ pub fn num(ty: Type) -> Num {
         Type::Int => Num::I16,
         Type::Dint => Num::I32,
         Type::Lint | Type::Time => Num::I64,
-        Type::Usint => Num::U8,
-        Type::Uint => Num::U16,
-        Type::Udint => Num::U32,
-        Type::Ulint | Type::String(_) | Type::Fb(_) => Num::U64,
+        Type::Usint | Type::Byte => Num::U8,
+        Type::Uint | Type::Word => Num::U16,
+        Type::Udint | Type::Dword => Num::U32,
+        Type::Ulint | Type::Lword | Type::String(_) | Type::Fb(_) => Num::U64,
         Type::Real => Num::F32,
         Type::Lreal => Num::F64,
     }
@@ -187,7 +191,7 @@ pub(crate) fn word_of(ty: Type, value: &Value) -> u64 {
         (Value::Bool(b), _) => u64::from(*b),
         (Value::Int(v), Type::Real) => u64::from((*v as f32).to_bits()),
         (Value::Int(v), Type::Lreal) => (*v as f64).to_bits(),
-        (Value::Int(v), Type::Ulint) => *v as u64,
+        (Value::Int(v), Type::Ulint | Type::Lword) => *v as u64,
         (Value::Int(v), _) => *v as i64 as u64,
         (Value::Real(v), Type::Real) => u64::from((*v as f32).to_bits()),
         (Value::Real(v), _) => v.to_bits(),

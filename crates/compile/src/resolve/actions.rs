@@ -208,6 +208,7 @@ impl Resolver<'_, '_> {
         let at = p.names.iter().map(|n| n.at.0).reduce(Span::to).unwrap_or_default();
         match self.refer(&p.names)? {
             Ref::Var(v) => self.boolean_target(v, at),
+            Ref::Bit(v, bit) => self.no_bit_here(v, bit, at),
             Ref::Member(..) => {
                 let what = say!("`{}` is part of a function block; an action needs a variable", p.text());
                 self.report(

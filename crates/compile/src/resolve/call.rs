@@ -7,6 +7,7 @@ use super::resolver::{Resolver, Role, nearest};
 use super::scopes::Entity;
 use super::types::{Typed, converted};
 use crate::ir::{BinaryOp, Expr, ExprKind, FunctionId, Value};
+use crate::tree::transfers;
 
 /// Nanoseconds of the unit in which TIME is converted to numbers.
 const MILLISECOND: i128 = Nanos::MILLISECOND.count() as i128;
@@ -170,6 +171,14 @@ impl Resolver<'_, '_> {
         match (from, to) {
             (Type::Time, _) if to.is_number() => self.time_as_number(e, to, at),
             (_, Type::Time) if from.is_number() => self.number_as_time(e, at),
+            _ if from.is_bits() && !whole(to) || to.is_bits() && !whole(from) => {
+                let what = say!("there is no conversion from {from} to {to}");
+                let problem = Problem::new(&codes::UNKNOWN_NAME, name.at.0, what);
+                let between = from.unsigned().or(to.unsigned()).unwrap_or(Type::Udint);
+                self.report(problem.help(say!(
+                    "convert it by way of a number: `{from}_TO_{between}` and `{between}_TO_{to}`"
+                )))
+            }
             (Type::Time, Type::Bool) | (Type::Bool | Type::String(_), Type::Time) => {
                 let what = say!("there is no conversion from {from} to {to}");
                 self.report(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what))
@@ -181,6 +190,9 @@ impl Resolver<'_, '_> {
     fn convert(&mut self, e: Expr, to: Type, at: Span) -> Option<Typed> {
         if e.ty == to {
             return Some(Typed { expr: Expr { at, ..e }, literal: false });
+        }
+        if transfers(e.ty, to) {
+            return Some(Typed { expr: converted(Expr { at, ..e }, to), literal: false });
         }
         if let ExprKind::Const(v) = &e.kind {
             match constant::convert(v, to) {
@@ -227,6 +239,11 @@ impl Resolver<'_, '_> {
         let kind = ExprKind::Binary(BinaryOp::Mul, Box::new(ms), Box::new(e));
         Some(Typed::of(kind, Type::Time, at))
     }
+}
+
+/// True if bits can be transferred to values of the type, and from these.
+fn whole(ty: Type) -> bool {
+    ty.is_bits() || ty.is_integer() || ty == Type::Bool
 }
 
 /// `DINT_TO_INT`.

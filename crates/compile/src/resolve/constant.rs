@@ -91,7 +91,7 @@ pub(super) fn negate(ty: Type, v: &Value) -> Folded {
 pub(super) fn convert(v: &Value, to: Type) -> Folded {
     match (v, to) {
         (Value::Bool(_), Type::Bool) | (Value::Str(_), Type::String(_)) => Ok(Some(v.clone())),
-        (Value::Bool(b), _) if to.is_integer() => Ok(Some(Value::Int(i128::from(*b)))),
+        (Value::Bool(b), _) if to.is_integer() || to.is_bits() => Ok(Some(Value::Int(i128::from(*b)))),
         (Value::Bool(b), Type::Real | Type::Lreal) => Ok(Some(Value::Real(f64::from(u8::from(*b))))),
         (Value::Int(n), Type::Bool) => Ok(Some(Value::Bool(*n != 0))),
         (Value::Real(x), Type::Bool) => Ok(Some(Value::Bool(*x != 0.0))),
@@ -127,6 +127,13 @@ pub(super) fn fit(ty: Type, v: i128) -> Result<i128, Fault> {
         _ => ty.bounds().unwrap_or((i128::MIN, i128::MAX)),
     };
     if v < least || v > most { Err(Fault::Overflow) } else { Ok(v) }
+}
+
+/// The lowest bits of a whole number, as a value of the type.
+pub(super) fn transferred(n: i128, to: Type) -> i128 {
+    let Some((least, most)) = to.bounds() else { return n };
+    let count = most - least + 1;
+    (n - least).rem_euclid(count) + least
 }
 
 /// REAL keeps 32 bits.

@@ -8,12 +8,12 @@ use g7_model::{
     Arg, Expr as Written, ExprKind as Form, Literal, Path, Problem, Said, Span, Type, UnaryOp, codes, say,
 };
 
-use super::constant;
 use super::operator;
 use super::refer::{Ref, Unit as TimeUnit};
 use super::resolver::{Resolver, Role};
 use super::scopes::Entity;
 use super::types::Typed;
+use super::{bits, constant};
 use crate::ir::{Expr, ExprKind, Value, VarClass};
 
 impl Resolver<'_, '_> {
@@ -154,6 +154,7 @@ impl Resolver<'_, '_> {
                 let ty = kind.members().get(usize::from(m))?.1;
                 Typed::of(ExprKind::Member(v, m), ty, at)
             }
+            Ref::Bit(v, bit) => return self.bit_of(v, bit, at),
             Ref::Active(s) => Typed::of(ExprKind::StepActive(s), Type::Bool, at),
             Ref::Time(s, TimeUnit::Clock) if scans => Typed::of(ExprKind::StepScans(s), Type::Int, at),
             Ref::Time(s, TimeUnit::Clock) => Typed::of(ExprKind::StepTime(s), Type::Time, at),
@@ -164,7 +165,7 @@ impl Resolver<'_, '_> {
 
     fn unary(&mut self, op: UnaryOp, operand: &Written, hint: Option<Type>, at: Span) -> Option<Typed> {
         match op {
-            UnaryOp::Not => self.complement(operand, at),
+            UnaryOp::Not => self.complement(operand, hint, at),
             UnaryOp::Neg => self.minus(operand, hint, at),
             UnaryOp::Rise | UnaryOp::Fall => {
                 let allowed = self.allow_watch(say!("an edge"), at);
@@ -177,9 +178,13 @@ impl Resolver<'_, '_> {
         }
     }
 
-    /// `not e`.
-    pub(super) fn complement(&mut self, operand: &Written, at: Span) -> Option<Typed> {
-        let e = self.condition(operand)?;
+    /// `not e`, of a BOOL or a bit string.
+    pub(super) fn complement(&mut self, operand: &Written, hint: Option<Type>, at: Span) -> Option<Typed> {
+        let t = self.infer(operand, hint)?;
+        if t.expr.ty.is_bits() {
+            return Some(bits::complement(t.expr, at));
+        }
+        let e = self.coerce(t, Type::Bool)?;
         Some(match e.kind {
             ExprKind::Const(Value::Bool(b)) => Typed::constant(Value::Bool(!b), Type::Bool, at),
             _ => Typed::of(ExprKind::Not(Box::new(e)), Type::Bool, at),

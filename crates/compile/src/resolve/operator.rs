@@ -2,14 +2,14 @@
 
 use g7_model::{BinaryOp as Sign, Operands, Problem, Said, Span, Type, codes, say};
 
-use super::constant;
 use super::resolver::Resolver;
 use super::types::{Typed, common, converted};
+use super::{bits, constant};
 use crate::ir::{BinaryOp, Expr, ExprKind, Value};
 
 /// True if the result has the type of the operands, so that a hint goes down to them.
 pub(super) fn keeps_type(sign: Sign) -> bool {
-    sign.row().operands == Operands::Arithmetic
+    sign.row().operands != Operands::Comparison
 }
 
 /// The operator of the typed tree: there `·` is an AND like any other.
@@ -57,6 +57,9 @@ impl Resolver<'_, '_> {
 
     /// Resolves a logical operator; its operands are BOOL, or the literals 0 and 1.
     fn logic(&mut self, sign: Sign, op: BinaryOp, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        if bits::are_joined(&a, &b) {
+            return self.bitwise(sign, a, b, at);
+        }
         let logical = |t: &Typed| t.expr.ty == Type::Bool || t.truth_literal();
         if !logical(&a) && !logical(&b) && a.expr.ty.is_number() && b.expr.ty.is_number() {
             return self.wrong_operands(sign, &a, &b, at);
@@ -85,6 +88,7 @@ impl Resolver<'_, '_> {
     }
 
     fn arithmetic(&mut self, sign: Sign, a: Typed, b: Typed, at: Span) -> Option<Typed> {
+        let (a, b) = (bits::as_number(a), bits::as_number(b));
         let Some(ty) = meeting(&a, &b).filter(|t| t.is_number()) else {
             return self.wrong_operands(sign, &a, &b, at);
         };
@@ -147,7 +151,7 @@ impl Resolver<'_, '_> {
     }
 
     /// Builds an operator whose operands have one type; constants are computed at once.
-    fn finish(&mut self, op: BinaryOp, a: Expr, b: Expr, ty: Type, at: Span) -> Option<Typed> {
+    pub(super) fn finish(&mut self, op: BinaryOp, a: Expr, b: Expr, ty: Type, at: Span) -> Option<Typed> {
         if let (ExprKind::Const(x), ExprKind::Const(y)) = (&a.kind, &b.kind) {
             match constant::binary(op, a.ty, x, y) {
                 Ok(Some(v)) => return Some(Typed::constant(v, ty, at)),
@@ -172,7 +176,7 @@ impl Resolver<'_, '_> {
         Some(())
     }
 
-    fn wrong_operands<T>(&mut self, sign: Sign, a: &Typed, b: &Typed, at: Span) -> Option<T> {
+    pub(super) fn wrong_operands<T>(&mut self, sign: Sign, a: &Typed, b: &Typed, at: Span) -> Option<T> {
         let name = |t: &Typed| match t.value() {
             Some(Value::Real(_)) if t.literal => say!("a real number"),
             Some(_) if t.literal => say!("a whole number"),
@@ -195,7 +199,7 @@ fn meeting(a: &Typed, b: &Typed) -> Option<Type> {
         _ => return common(a.expr.ty, b.expr.ty),
     };
     match literal.value()? {
-        Value::Int(_) if other.is_number() || other == Type::Bool => Some(other),
+        Value::Int(_) if other.is_number() || other.is_bits() || other == Type::Bool => Some(other),
         Value::Real(_) if other.is_integer() => common(other, Type::Real),
         Value::Real(_) if other.is_real() => Some(other),
         _ => None,

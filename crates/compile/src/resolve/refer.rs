@@ -17,6 +17,8 @@ pub(super) enum Ref {
     Var(VarId),
     /// A member of a function block instance.
     Member(VarId, u8),
+    /// A bit of a variable; the type need not have so many.
+    Bit(VarId, u8),
     /// The activity of a step.
     Active(StepId),
     /// The time since its activation, in one of its units.
@@ -69,6 +71,11 @@ impl Resolver<'_, '_> {
         }
     }
 
+    /// The same, without a report.
+    pub(super) fn found(&self, names: &[Name]) -> Option<Ref> {
+        self.lookup(names).ok()
+    }
+
     fn lookup(&self, names: &[Name]) -> Result<Ref, Miss> {
         let Some(first) = names.first() else { return Err(Miss::Name(0, None)) };
         let Some(second) = names.get(1) else { return self.single(&first.text) };
@@ -80,8 +87,8 @@ impl Resolver<'_, '_> {
             }
         }
         if let Some(Entity::Var(v)) = self.entity(&first.text) {
-            if let (Some(m), 2) = (self.member(v, &second.text), names.len()) {
-                return Ok(Ref::Member(v, m));
+            if let (Some(part), 2) = (self.part(v, &second.text), names.len()) {
+                return Ok(part);
             }
             let fb = matches!(self.var(v).map(|v| v.ty), Some(Type::Fb(_)));
             miss = miss.or(Some(if fb { Miss::Member(1, v) } else { Miss::NoMembers(1, v) }));
@@ -134,8 +141,8 @@ impl Resolver<'_, '_> {
         let entity = self.scopes.of_chart(chart, &name.text);
         if k + 1 < names.len() {
             if let (Some(Entity::Var(v)), Some(member)) = (entity, names.get(k + 1)) {
-                if let (Some(m), true) = (self.member(v, &member.text), k + 2 == names.len()) {
-                    return Ok(Ref::Member(v, m));
+                if let (Some(part), true) = (self.part(v, &member.text), k + 2 == names.len()) {
+                    return Ok(part);
                 }
                 if matches!(self.var(v).map(|v| v.ty), Some(Type::Fb(_))) {
                     return Err(Miss::Member(k + 1, v));
@@ -226,6 +233,12 @@ impl Resolver<'_, '_> {
             Type::Fb(kind) => super::fb::member(kind, name),
             _ => None,
         }
+    }
+
+    /// A member of an instance, or a bit of a number.
+    fn part(&self, v: VarId, name: &str) -> Option<Ref> {
+        let bit = || Self::bit_number(name, self.var(v)?.ty).map(|bit| Ref::Bit(v, bit));
+        self.member(v, name).map(|m| Ref::Member(v, m)).or_else(bit)
     }
 
     /// The problem to report if nothing was found.
@@ -366,6 +379,12 @@ impl Resolver<'_, '_> {
         if text.starts_with('X') {
             return self.direct_step(text, at);
         }
+        if let Some((word, bit)) = text.split_once(":X")
+            && let Some(v) = self.scopes.addresses.get(&normal_address(word)).copied()
+            && let Some(bit) = self.var(v).and_then(|v| Self::bit_number(bit, v.ty))
+        {
+            return Some(Ref::Bit(v, bit));
+        }
         if let Some(ty) = super::system::type_of(text) {
             return Some(Ref::Var(self.system(text, ty, at)));
         }
@@ -443,7 +462,7 @@ impl Resolver<'_, '_> {
     /// Checks that code in this place may read it; reports a problem if not.
     pub(super) fn may_read(&mut self, r: Ref, at: Span) -> bool {
         let class = match r {
-            Ref::Var(v) => self.var(v).map(|v| v.class),
+            Ref::Var(v) | Ref::Bit(v, _) => self.var(v).map(|v| v.class),
             Ref::Member(..) | Ref::Active(_) | Ref::Time(..) => None,
         };
         if self.frame.watched && class == Some(VarClass::Local) {

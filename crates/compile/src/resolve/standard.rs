@@ -119,7 +119,7 @@ impl Resolver<'_, '_> {
         }
         match way(standard) {
             Way::Operator(op) => self.operated(op, row, &given, hint, at),
-            Way::Not => self.complement(&given.first()?.value, at),
+            Way::Not => self.complement(&given.first()?.value, hint, at),
             Way::Move => self.infer(&given.first()?.value, hint).map(|mut t| {
                 t.expr.at = at;
                 t
@@ -216,11 +216,12 @@ impl Resolver<'_, '_> {
         let (bits, count) = (bits?, count?);
         let ty = if bits.literal { hint.unwrap_or(Type::Udint) } else { bits.expr.ty };
         if !unsigned(&ty) {
-            let what = say!("`{}` takes a USINT, UINT, UDINT or ULINT, this is {ty}", row.name);
+            let what =
+                say!("`{}` takes a bit string or a whole number without a sign, this is {ty}", row.name);
             let problem = Problem::new(&codes::WRONG_TYPE, bits.expr.at, what);
             return self.report(match ty {
                 Type::Sint | Type::Int | Type::Dint | Type::Lint => {
-                    problem.help(say!("convert it with `{ty}_TO_U{ty}(…)`; a negative value is a fault"))
+                    problem.help(say!("convert it with `{ty}_TO_{}(…)`", ty.bit_string().unwrap_or(ty)))
                 }
                 _ => problem,
             });

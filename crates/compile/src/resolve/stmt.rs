@@ -111,6 +111,10 @@ impl Resolver<'_, '_> {
         if let Some(step) = self.step_bit(target) {
             return self.preset(step, target.at.0, value);
         }
+        if let Some((v, bit)) = self.bit_target(target) {
+            let value = self.value(value, Type::Bool)?;
+            return self.assign_bit(v, bit, value, target.at.0);
+        }
         match self.target(target) {
             Some((target, ty)) => Some(StmtKind::Assign(target, self.value(value, ty)?)),
             None => {
@@ -118,6 +122,16 @@ impl Resolver<'_, '_> {
                 None
             }
         }
+    }
+
+    /// The bit of a variable that an assignment writes.
+    fn bit_target(&mut self, target: &Written) -> Option<(VarId, u8)> {
+        let r = match &target.kind {
+            Form::Path(path) if path.names.len() > 1 => self.found(&path.names)?,
+            Form::Direct(text) if text.contains(":X") => self.refer_direct(text, target.at.0)?,
+            _ => return None,
+        };
+        if let Ref::Bit(v, bit) = r { Some((v, bit)) } else { None }
     }
 
     /// The step of `%X12` where PRE writes it.
@@ -228,6 +242,10 @@ impl Resolver<'_, '_> {
     }
 
     fn selector(&mut self, e: Expr) -> Option<Expr> {
+        let e = match e.ty.unsigned() {
+            Some(number) => super::types::converted(e, number),
+            None => e,
+        };
         if e.ty.is_integer() && e.ty != Type::Ulint {
             return Some(e);
         }
@@ -346,6 +364,7 @@ impl Resolver<'_, '_> {
                 self.may_write(v, VarClass::Internal, at)?;
                 Some((Target::Member(v, m), ty))
             }
+            Ref::Bit(v, bit) => self.no_bit_here(v, bit, at),
             Ref::Active(_) | Ref::Time(..) => {
                 let problem =
                     Problem::new(&codes::NOT_WRITABLE, at, say!("the state of a step cannot be assigned"));

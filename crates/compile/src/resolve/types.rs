@@ -2,9 +2,10 @@
 
 use g7_model::{Problem, Said, Span, Type, codes, say};
 
-use super::constant::{self, Fault};
+use super::constant::{self, Fault, transferred};
 use super::resolver::Resolver;
 use crate::ir::{Expr, ExprKind, Value};
+use crate::tree::transfers;
 
 /// An expression, with a flag for an untyped literal: such a constant adapts to the type that is
 /// needed.
@@ -58,6 +59,12 @@ pub(super) fn widens(from: Type, to: Type) -> bool {
     }
 }
 
+/// True if a value can be taken for a number: a bit string has the values of a whole type without
+/// a sign (decision 57).
+fn counts(ty: Type) -> bool {
+    ty.is_number() || ty.is_bits()
+}
+
 fn bits(ty: Type) -> u8 {
     ty.elementary().map_or(0, |row| row.bits)
 }
@@ -68,10 +75,11 @@ pub(super) fn common(a: Type, b: Type) -> Option<Type> {
         (Type::String(m), Type::String(n)) => Some(Type::String(m.max(n))),
         (Type::Fb(_), _) | (_, Type::Fb(_)) => None,
         _ if a == b => Some(a),
-        _ if !a.is_number() || !b.is_number() => None,
+        _ if a.is_bits() && b.is_bits() => Some(if widens(a, b) { b } else { a }),
+        _ if !counts(a) || !counts(b) => None,
         _ => {
             let both = Type::ELEMENTARY.into_iter().filter(|t| widens(a, *t) && widens(b, *t));
-            both.min_by_key(|t| (t.is_real(), bits(*t)))
+            both.filter(|t| !t.is_bits()).min_by_key(|t| (t.is_real(), bits(*t)))
         }
     }
 }
@@ -113,7 +121,7 @@ impl Resolver<'_, '_> {
         let ExprKind::Const(value) = &t.expr.kind else { return Some(t.expr) };
         let adapted = match (value, want) {
             (Value::Int(n @ (0 | 1)), Type::Bool) => Value::Bool(*n == 1),
-            (Value::Int(n), _) if want.is_integer() => match constant::fit(want, *n) {
+            (Value::Int(n), _) if want.is_integer() || want.is_bits() => match constant::fit(want, *n) {
                 Ok(n) => Value::Int(n),
                 Err(_) => return self.out_of_range(n, want, at),
             },
@@ -176,6 +184,11 @@ impl Resolver<'_, '_> {
 /// Converts to a wider type; constants are converted at once.
 pub(super) fn converted(e: Expr, to: Type) -> Expr {
     let at = e.at;
+    if let ExprKind::Const(Value::Int(n)) = &e.kind
+        && transfers(e.ty, to)
+    {
+        return Expr { kind: ExprKind::Const(Value::Int(transferred(*n, to))), ty: to, at };
+    }
     if let ExprKind::Const(v) = &e.kind
         && let Ok(Some(v)) = constant::convert(v, to)
     {
@@ -204,9 +217,14 @@ fn wrong_type(e: &Expr, want: Type) -> Problem {
             }
         }
         (_, Type::Fb(_)) => problem,
-        (from, Type::Bool) if from.is_number() => problem.help(say!("compare it, as in `n <> 0`")),
+        (from, Type::Bool) if from.is_number() || from.is_bits() => {
+            problem.help(say!("compare it, as in `n <> 0`"))
+        }
         (from, to) if from.is_number() && to.is_number() => {
             problem.help(say!("convert it with `{from}_TO_{to}(…)`; a value that does not fit is a fault"))
+        }
+        (from, to) if transfers(from, to) => {
+            problem.help(say!("convert it with `{from}_TO_{to}(…)`, which takes the lowest bits"))
         }
         (Type::Time, to) if to.is_number() => {
             problem.help(say!("convert it with `TIME_TO_{to}(…)`, in milliseconds"))

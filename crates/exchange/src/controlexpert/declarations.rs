@@ -9,7 +9,7 @@ use roxmltree::Node;
 use super::read::{kid, kids, line};
 use g7_iec::nodes;
 use g7_iec::report::Report;
-use g7_iec::st::{self, bits, elementary};
+use g7_iec::st::{self, elementary};
 use g7_iec::xml::attr;
 
 /// The most variables of one application.
@@ -36,7 +36,7 @@ fn simple(name: &str) -> Option<Type> {
     if let Some(length) = text.and_then(|n| n.parse().ok()) {
         return Some(Type::String(length));
     }
-    elementary(&upper).or_else(|| bits(&upper))
+    elementary(&upper)
 }
 
 pub(super) fn data<'a>(root: Node<'a, 'a>, report: &mut Report) -> Data<'a> {

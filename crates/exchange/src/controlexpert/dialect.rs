@@ -37,9 +37,16 @@ pub(super) fn is_word(name: &str) -> bool {
 /// The name of a type; None where there is no such type.
 pub(super) fn type_name(ty: Type) -> Option<String> {
     match ty {
-        Type::Bool | Type::Int | Type::Dint | Type::Uint | Type::Udint | Type::Real | Type::Time => {
-            Some(ty.name().to_string())
-        }
+        Type::Bool
+        | Type::Int
+        | Type::Dint
+        | Type::Uint
+        | Type::Udint
+        | Type::Byte
+        | Type::Word
+        | Type::Dword
+        | Type::Real
+        | Type::Time => Some(ty.name().to_string()),
         // Without a number it would be another length.
         Type::String(length) => Some(format!("STRING[{length}]")),
         Type::Fb(
@@ -54,7 +61,7 @@ pub(super) fn type_name(ty: Type) -> Option<String> {
             | FbKind::Sr
             | FbKind::Rs,
         ) => Some(ty.name().to_string()),
-        Type::Sint | Type::Usint | Type::Lint | Type::Ulint | Type::Lreal => None,
+        Type::Sint | Type::Usint | Type::Lint | Type::Ulint | Type::Lword | Type::Lreal => None,
     }
 }
 

@@ -9,7 +9,7 @@ use g7_model::{Expr, Name, Type, VarDecl, VarKind, say};
 use super::chart::{Xml, description, kid, kids};
 use g7_iec::nodes;
 use g7_iec::report::Report;
-use g7_iec::st::{self, bits, elementary};
+use g7_iec::st::{self, elementary};
 use g7_iec::xml::attr;
 
 /// The longest chain of aliases, and the deepest nesting of structures.
@@ -120,7 +120,7 @@ impl<'a> Tags<'a> {
         if ty == "BIT" {
             return Some(Type::Bool);
         }
-        let found = elementary(&ty).or_else(|| bits(&ty));
+        let found = elementary(&ty);
         found.filter(|t| !matches!(t, Type::Fb(_)))
     }
 }

@@ -13,7 +13,7 @@ use super::read::{self, Sequence, StepNode, Xml, kid, kids, words};
 use crate::undeclared;
 use g7_iec::nodes::{self, Taken, boolean};
 use g7_iec::report::Report;
-use g7_iec::st::{self, bits, elementary};
+use g7_iec::st::{self, elementary};
 use g7_iec::xml::attr;
 use g7_model::visit_mut::{self, Use, Visitor};
 
@@ -194,7 +194,7 @@ fn declare(
     let upper = ty.trim_matches('"').to_ascii_uppercase();
     let upper = upper.strip_suffix("_TIME").map_or(upper.as_str(), |block| block);
     let text = upper.strip_prefix("STRING[").and_then(|n| n.strip_suffix(']')).and_then(|n| n.parse().ok());
-    let known = text.map(Type::String).or_else(|| elementary(upper)).or_else(|| bits(upper));
+    let known = text.map(Type::String).or_else(|| elementary(upper));
     let Some(known) = known else {
         report.say(
             &codes::LEFT_OUT,

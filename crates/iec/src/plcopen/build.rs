@@ -19,7 +19,6 @@ use super::types::{self, Known};
 use super::units::{self, Meaning, Unit, name_of};
 use crate::nodes::{self, Taken, line};
 use crate::report::Report;
-use crate::st::conversions;
 
 /// The document of a project.
 pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report: &mut Report) -> Document {
@@ -60,7 +59,6 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
     items.extend(made.charts.layouts.into_iter().map(Item::Layout));
     let mut document = Document { items, notes: report.take_notes() };
     inputs::settle(&mut document, report);
-    conversions(&mut document);
     document
 }
 

@@ -50,11 +50,9 @@ fn named(name: &str) -> Known {
         let length = length.trim_end_matches([']', ')']).trim().parse().unwrap_or(80);
         return Known::Type(Type::String(u16::clamp(length, 1, MOST_TEXT)));
     }
-    let numbers = st::bits(&upper);
     // Beremiz marks values that are also shown on a screen.
     let upper = upper.strip_prefix("HMI_").unwrap_or(&upper).to_string();
-    let known = numbers.or_else(|| st::elementary(&upper));
-    known.map_or_else(|| Known::Derived(name.to_string()), Known::Type)
+    st::elementary(&upper).map_or_else(|| Known::Derived(name.to_string()), Known::Type)
 }
 
 /// Reports the parts of a type that are carried over with a difference or not at all.
@@ -62,10 +60,6 @@ pub(super) fn judge(variable: Xml, report: &mut Report) {
     let Some(node) = type_of(variable) else { return };
     for inner in node.descendants().filter(|n| n.is_element()) {
         match tag(inner).as_str() {
-            bits @ ("BYTE" | "WORD" | "DWORD" | "LWORD") => {
-                let what = say!("bits of `{bits}` are carried over as a whole number without a sign");
-                report.element(&codes::DIFFERENT, bits, &head(inner), what);
-            }
             "subrangeSigned" | "subrangeUnsigned" => {
                 let what = say!("the range of a variable is left out");
                 report.element(&codes::LEFT_OUT, "subrange", &head(inner), what);

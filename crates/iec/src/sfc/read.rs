@@ -129,7 +129,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
 fn result_type(p: &mut Parser) -> Option<g7_model::Type> {
     let at = p.here();
     let word = p.word();
-    let ty = elementary(&word).or_else(|| crate::st::bits(&word));
+    let ty = elementary(&word);
     p.name(say!("a type"));
     if ty.is_none() {
         p.say(&codes::NOT_CARRIED, &at, say!("the result of a function has an elementary type"));

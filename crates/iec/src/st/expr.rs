@@ -172,14 +172,10 @@ impl Parser<'_> {
             }
             self.bump();
             if self.token().kind == Kind::Number {
-                let at = self.here();
-                self.say(
-                    &codes::NOT_CARRIED,
-                    &at,
-                    say!("a bit of a word cannot be named; there are no bit strings"),
-                );
+                // A bit of a number: `w.3`.
+                let token = self.token();
+                names.push(Name::new(self.slice(token), self.span_of(token)));
                 self.bump();
-                fits = false;
                 break;
             }
         }

@@ -5,7 +5,6 @@ use g7_model::{Expr, ExprKind, Literal, Name, Path, Said, say};
 
 use super::lex::{Kind, Token};
 use super::parse::Parser;
-use super::types::bits;
 use crate::constant;
 
 impl Parser<'_> {
@@ -42,7 +41,7 @@ impl Parser<'_> {
                 "FALSE" | "0" | "2#0" | "16#0" => self.boolean(token, false),
                 _ => self.refuse(token, say!("`{text}` is no BOOL")),
             },
-            _ => match super::types::elementary(&upper).or_else(|| bits(&upper)) {
+            _ => match super::types::elementary(&upper) {
                 Some(ty) if ty.is_real() => {
                     let constant = constant::typed(&format!("{ty}#{}", value.to_ascii_lowercase()));
                     self.read(token, constant, text)

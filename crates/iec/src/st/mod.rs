@@ -16,6 +16,7 @@
 //! Reading is lenient where dialects differ and the meaning is clear. An element without a
 //! counterpart is a problem with its place.
 
+mod bits;
 mod decl;
 pub(crate) mod expr;
 pub(crate) mod lex;
@@ -38,9 +39,9 @@ pub(crate) use lex::Kind;
 pub(crate) use parse::Parser;
 pub use parse::Places;
 pub use print::{Types as Known, Writer};
-pub use settle::{conversions, settle};
+pub use settle::settle;
 pub(crate) use types::Types;
-pub use types::{bits, elementary};
+pub use types::elementary;
 
 /// Reads statements of Structured Text; the text must end behind them.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {

@@ -11,6 +11,8 @@ use g7_model::{
     StandardFunction, Stmt, StmtKind, Type, UnaryOp, VarDecl,
 };
 
+use super::bits::{self, Bit};
+
 /// The type of an expression, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Ty {
@@ -76,15 +78,28 @@ fn standard(op: BinaryOp) -> BinaryOp {
 /// The wider of two types, by the widening rules of the .g7 language.
 fn wider(a: Type, b: Type) -> Type {
     let rank = |t: Type| match t.elementary() {
-        Some(row) if t.is_number() => (t.is_real(), row.bits, row.holds == Holds::Signed),
+        Some(row) if counts(t) => (t.is_real(), row.bits, row.holds == Holds::Signed),
         _ => (false, 0, false),
     };
     if rank(a) >= rank(b) { a } else { b }
 }
 
+/// A number, or a bit string that stands for one.
+fn counts(ty: Type) -> bool {
+    ty.is_number() || ty.is_bits()
+}
+
 impl Text {
     fn operand(text: String, ty: Ty) -> Text {
         Text { text, ty, strength: BinaryOp::TIGHTEST }
+    }
+
+    /// A bit string as a number from 0; anything else as it is.
+    fn counted(self) -> Text {
+        match self.ty {
+            Ty::Known(ty) => self.converted(ty.unsigned().unwrap_or(ty)),
+            _ => self,
+        }
     }
 
     fn within(self, least: u8) -> String {
@@ -98,7 +113,7 @@ impl Text {
     /// Converts a number to another type.
     fn converted(self, to: Type) -> Text {
         match self.ty {
-            Ty::Known(from) if from != to && from.is_number() && to.is_number() => {
+            Ty::Known(from) if from != to && counts(from) && counts(to) => {
                 Text::operand(format!("{from}_TO_{to}({})", self.text), Ty::Known(to))
             }
             Ty::Whole if to.is_real() => {
@@ -106,6 +121,10 @@ impl Text {
                 let text =
                     if digits { format!("{}.0", self.text) } else { format!("DINT_TO_{to}({})", self.text) };
                 Text { text, ty: Ty::Known(to), strength: self.strength }
+            }
+            Ty::Whole if to.is_bits() => {
+                let text = bits::literal(&self.text, to).unwrap_or(self.text);
+                Text::operand(text, Ty::Known(to))
             }
             // A literal used as a condition.
             Ty::Whole if to == Type::Bool => {
@@ -149,8 +168,13 @@ impl Writer<'_> {
     fn unary(&self, op: UnaryOp, inner: &Expr) -> Text {
         match op {
             UnaryOp::Not => {
-                let text = self.text(inner).converted(Type::Bool).within(8);
-                Text { text: format!("NOT {text}"), ty: Ty::Known(Type::Bool), strength: 8 }
+                let inner = self.text(inner);
+                let ty = match inner.ty {
+                    Ty::Known(ty) if ty.is_bits() => ty,
+                    _ => Type::Bool,
+                };
+                let text = inner.converted(ty).within(8);
+                Text { text: format!("NOT {text}"), ty: Ty::Known(ty), strength: 8 }
             }
             UnaryOp::Neg => {
                 let inner = self.text(inner);
@@ -178,17 +202,36 @@ impl Writer<'_> {
         let operands = op.row().operands;
         let logical = operands == Operands::Logic;
         let compares = operands == Operands::Comparison;
-        let (left, right, common) = if logical {
+        let strings = [&left, &right].iter().any(|t| matches!(t.ty, Ty::Known(ty) if ty.is_bits()));
+        let equal = matches!(op, BinaryOp::Eq | BinaryOp::Ne);
+        let (left, right, common) = if strings && (logical || equal) {
+            let string = |t: Text| match t.ty {
+                Ty::Known(ty) => t.converted(ty.bit_string().filter(|_| logical).unwrap_or(ty)),
+                _ => t,
+            };
+            alike(string(left), string(right), op)
+        } else if strings {
+            alike(left.counted(), right.counted(), op)
+        } else if logical {
             (left.converted(Type::Bool), right.converted(Type::Bool), Ty::Known(Type::Bool))
         } else {
             alike(left, right, op)
         };
-        let ty = if logical || compares { Ty::Known(Type::Bool) } else { common };
+        let ty = if logical && !strings || compares { Ty::Known(Type::Bool) } else { common };
         let text = format!("{} {} {}", left.within(own), op.row().standard, right.within(own + 1));
         Text { text, ty, strength: own }
     }
 
+    /// The bit of a variable that a path names.
+    fn bit<'p>(&self, path: &'p Path) -> Option<Bit<'p>> {
+        let [name, number] = path.names.as_slice() else { return None };
+        Bit::of(&name.text, *self.types.names.get(&*name.text)?, &number.text)
+    }
+
     fn path(&self, path: &Path) -> Text {
+        if let Some(bit) = self.bit(path) {
+            return Text { text: bit.read(), ty: Ty::Known(Type::Bool), strength: BinaryOp::Ne.strength() };
+        }
         let ty = match path.names.as_slice() {
             [one] => self.types.names.get(&*one.text).copied(),
             [first, second] => match self.types.names.get(&*first.text) {
@@ -250,6 +293,7 @@ impl Writer<'_> {
         let at = |want: usize| args.iter().enumerate().find(|(k, a)| place(a, *k) == Some(want));
         let (bits, count) = (self.text(&at(0)?.1.value), self.text(&at(1)?.1.value));
         let Ty::Known(ty) = bits.ty else { return None };
+        // That of a bit string is written as it is.
         let string = ty.bit_string()?;
         let text = format!("{string}_TO_{ty}({name}({ty}_TO_{string}({}), {}))", bits.text, count.text);
         Some(Text::operand(text, Ty::Known(ty)))
@@ -279,6 +323,11 @@ impl Writer<'_> {
         };
         match &stmt.kind {
             StmtKind::Assign { target, value } => {
+                if let ExprKind::Path(path) = &target.kind
+                    && let Some(bit) = self.bit(path)
+                {
+                    return line(&bit.write(&self.condition(value)));
+                }
                 let target = self.text(target);
                 let value = self.text(value);
                 let value = match target.ty {
@@ -305,7 +354,7 @@ impl Writer<'_> {
                 out.push_str(&format!("{pad}END_IF;\n"));
             }
             StmtKind::Case(selector, arms, otherwise) => {
-                let selector = self.text(selector).text;
+                let selector = self.text(selector).counted().text;
                 out.push_str(&format!("{pad}CASE {selector} OF\n"));
                 for arm in arms {
                     let labels: Vec<String> =
@@ -401,7 +450,7 @@ fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
         return (left, right, Ty::Known(Type::Time));
     }
     match (left.ty, right.ty) {
-        (Ty::Known(a), Ty::Known(b)) if a.is_number() && b.is_number() => {
+        (Ty::Known(a), Ty::Known(b)) if counts(a) && counts(b) => {
             let ty = wider(a, b);
             (left.converted(ty), right.converted(ty), Ty::Known(ty))
         }

@@ -7,10 +7,8 @@ use std::collections::HashMap;
 
 use g7_model::{
     Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Path, Stmt,
-    StmtKind, Target, Work, visit_mut,
+    StmtKind, Target, Work,
 };
-
-use super::types::conversion;
 
 /// Gives every name in a document the spelling of its declaration.
 pub fn settle(document: &mut Document) {
@@ -52,28 +50,6 @@ pub fn settle(document: &mut Document) {
                 settler.chart(c);
             }
             _ => {}
-        }
-    }
-}
-
-/// Gives conversions of bit strings the number types that stand for these.
-pub fn conversions(document: &mut Document) {
-    visit_mut::document(document, &mut Conversions);
-    for item in &mut document.items {
-        if let Item::Function(f) = item {
-            visit_mut::stmts(&mut f.body.statements, &mut Conversions);
-        }
-    }
-}
-
-struct Conversions;
-
-impl visit_mut::Visitor for Conversions {
-    fn expr(&mut self, e: &mut Expr) {
-        let ExprKind::Call(path, _) = &mut e.kind else { return };
-        let [name] = path.names.as_mut_slice() else { return };
-        if let Some(text) = conversion(&upper(name)) {
-            name.text = text.into();
         }
     }
 }
@@ -307,15 +283,14 @@ impl Settler<'_> {
         }
     }
 
-    /// Settles a declared function, or a standard one in upper case with number types instead of
-    /// bit strings.
+    /// Settles a declared function, or a standard one in upper case.
     fn function(&self, path: &mut Path) {
         let [name] = path.names.as_mut_slice() else { return self.path(path) };
         let capitals = upper(name);
         if let Some(text) = find(&self.names, &capitals) {
             name.text = text.into();
         } else {
-            name.text = conversion(&capitals).unwrap_or(capitals).into();
+            name.text = capitals.into();
         }
     }
 }

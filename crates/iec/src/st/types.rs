@@ -21,18 +21,6 @@ pub fn elementary(upper: &str) -> Option<Type> {
     }
 }
 
-/// The number type with the same number of bits as a bit string.
-pub fn bits(upper: &str) -> Option<Type> {
-    Type::ELEMENTARY.into_iter().find(|ty| ty.bit_string() == Some(upper))
-}
-
-/// A conversion with number types in place of bit strings: `WORD_TO_INT` is `UINT_TO_INT`.
-pub(super) fn conversion(upper: &str) -> Option<String> {
-    let (from, to) = upper.split_once("_TO_")?;
-    let number = |word: &str| bits(word).map_or_else(|| word.to_owned(), |ty| ty.to_string());
-    (bits(from).is_some() || bits(to).is_some()).then(|| format!("{}_TO_{}", number(from), number(to)))
-}
-
 /// The structure of a type.
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
@@ -173,12 +161,6 @@ impl Parser<'_> {
             return self.enumeration();
         }
         let Some(name) = self.name(say!("a type")) else { return Shape::Simple(Type::Bool, None) };
-        if let Some(ty) = bits(&upper) {
-            let what = say!("`{upper}` is carried over as {ty}; there are no bit strings");
-            self.report.element(&codes::DIFFERENT, &upper, &at, what);
-            self.subrange(&at);
-            return Shape::Simple(ty, None);
-        }
         match elementary(&upper) {
             Some(Type::String(_)) => Shape::Simple(Type::String(self.length()), None),
             Some(ty) => {

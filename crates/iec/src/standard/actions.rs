@@ -6,11 +6,11 @@
 use std::collections::HashMap;
 
 use g7_model::{
-    Action, ActionKind, Block, Expr, FbKind, Name, Nanos, Order, Qualifier, Span, Step, StepKind, Stmt,
+    Action, ActionKind, Block, Expr, FbKind, Name, Nanos, Order, Qualifier, Said, Span, Step, StepKind, Stmt,
     Target, Type, Work, say,
 };
 
-use super::bodies::At;
+use super::bodies::{At, MOST_CONSTANTS};
 use super::lower::{Drive, Form, Formula, Lower};
 use crate::nodes;
 use crate::scopes::{Ref, StepKey, VarKey};
@@ -145,7 +145,7 @@ impl<'d> Lower<'d> {
         title: &str,
     ) -> ActionKind {
         let qualifier = drive.qualifier;
-        let time = drive.time.map(|t| self.time(t, at));
+        let time = self.drive_time(drive, at);
         let plain = |list| ActionKind::Qualified {
             qualifier,
             time: time.clone(),
@@ -233,10 +233,7 @@ impl<'d> Lower<'d> {
         let block = self.fresh(at.program, &format!("{title}_timer"), Type::Fb(kind), span);
         let mut args = vec![(input, is.clone())];
         if kind == FbKind::Ton {
-            args.push((
-                "PT",
-                drive.time.map_or_else(|| nodes::time(Nanos::ZERO, span), |t| self.time(t, at)),
-            ));
+            args.push(("PT", self.drive_time(drive, at).unwrap_or_else(|| nodes::time(Nanos::ZERO, span))));
         }
         calls.push(nodes::invoke(nodes::path(&[&block], span), args, span));
         let q = nodes::name(&[&block, "Q"], span);
@@ -244,6 +241,23 @@ impl<'d> Lower<'d> {
             Qualifier::L => nodes::and(is, nodes::not(q, span), span),
             _ => q,
         })
+    }
+
+    /// The time of a qualifier. That of D and L is read in each scan there, as a TON reads its PT.
+    fn drive_time(&mut self, drive: &Drive<'d>, at: &At<'d>) -> Option<Expr> {
+        let written = drive.time?;
+        let time = self.time(written, at);
+        let follows = matches!(drive.qualifier, Qualifier::D | Qualifier::L);
+        if follows && self.folded(written, at.chart, MOST_CONSTANTS).is_none() {
+            let name = Said::foreign(drive.qualifier.name());
+            self.differs(
+                written.at.0,
+                say!(
+                    "the time of {name} is read in each scan there; here it is read as the step is activated"
+                ),
+            );
+        }
+        Some(time)
     }
 
     /// A variable or a named action.
@@ -258,7 +272,7 @@ impl<'d> Lower<'d> {
         if let Some(key) = self.driven(drive.step.0, target) {
             return self.driving(key, drive, span, at);
         }
-        let (qualifier, time) = (drive.qualifier, drive.time.map(|t| self.time(t, at)));
+        let (qualifier, time) = (drive.qualifier, self.drive_time(drive, at));
         let Target::Path(path) = target else {
             self.lost(span, say!("what a step drives has a name; declare a variable at this address"));
             return None;
@@ -306,7 +320,7 @@ impl<'d> Lower<'d> {
                 self.lost(span, what);
             }
         }
-        let time = drive.time.map(|t| self.time(t, at));
+        let time = self.drive_time(drive, at);
         let g7_model::ExprKind::Path(path) = target.kind else { return None };
         let target = Target::Path(path);
         Some(ActionKind::Qualified { qualifier: drive.qualifier, time, target, condition: None })

@@ -29,7 +29,7 @@ mod watch;
 
 use std::collections::HashSet;
 
-use g7_model::{Document, Problem};
+use g7_model::{Chart, Document, Problem, codes, say};
 
 use crate::signs;
 
@@ -37,6 +37,12 @@ pub(crate) use counts::LONGEST;
 pub(crate) use idle::without_idle;
 pub(crate) use lower::Form;
 use lower::Lower;
+
+/// The refusal of a chart without a step, for compilers that ask for a body.
+pub(crate) fn without_steps(chart: &Chart) -> Option<Problem> {
+    let what = || say!("the chart `{}` has no step, and a program has a body", chart.name.text);
+    chart.steps().next().is_none().then(|| Problem::new(&codes::NOT_CARRIED, chart.name.at.0, what()))
+}
 
 /// Rewrites a document; returns it with the problems of what it does not carry.
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {

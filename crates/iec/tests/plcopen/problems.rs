@@ -14,7 +14,6 @@ fn each_mistake_has_its_line() {
         "G0615 8",  // two variables of one name
         "G0604 9",  // a variable of that type
         "G0605 10", // an address given elsewhere
-        "G0614 10", // bits as a number
         "G0611 14", // two steps of one name
         "G0609 14", // a step behind a step
         "G0606 15", // no condition

@@ -198,7 +198,7 @@ pub fn show(program: &Program, state: &mut State, binding: &Binding) -> Show {
         Type::Real => Show::Number(rounded(f64::from(f32::from_bits(word as u32)))),
         Type::Lreal => Show::Number(rounded(f64::from_bits(word))),
         Type::Time => Show::Number(Nanos::new(word as i64).as_seconds()),
-        Type::Ulint => Show::Number(word as f64),
+        Type::Ulint | Type::Lword => Show::Number(word as f64),
         _ => Show::Number(word as i64 as f64),
     }
 }

@@ -149,7 +149,7 @@ pub(super) fn kind(ty: Type) -> Option<Kind> {
     Some(match row.holds {
         Holds::Truth => Kind::Bool,
         Holds::Signed => Kind::Int { bits: row.bits, signed: true },
-        Holds::Unsigned => Kind::Int { bits: row.bits, signed: false },
+        Holds::Unsigned | Holds::Bits => Kind::Int { bits: row.bits, signed: false },
         Holds::Real if ty == Type::Real => Kind::Real,
         Holds::Real => Kind::Lreal,
         Holds::Time => Kind::Time,

@@ -147,7 +147,7 @@ pub fn value(ty: Type, words: &[u64]) -> Expr {
     expr(ExprKind::Literal(match ty.holds() {
         Some(Holds::Truth) | None => Literal::Bool(word != 0),
         Some(Holds::Signed) => Literal::Int(i128::from(word as i64), None),
-        Some(Holds::Unsigned) => Literal::Int(i128::from(word), None),
+        Some(Holds::Unsigned | Holds::Bits) => Literal::Int(i128::from(word), None),
         Some(Holds::Real) if ty == Type::Real => real(format!("{:?}", f32::from_bits(word as u32))),
         Some(Holds::Real) => real(format!("{:?}", f64::from_bits(word))),
         Some(Holds::Time) => Literal::Time(Nanos::new(word as i64)),

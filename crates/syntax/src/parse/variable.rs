@@ -203,9 +203,6 @@ impl Parser<'_> {
                 return meant(problem, other.name());
             }
             problem.help(match (&*upper, words::similar(word, &names)) {
-                ("BYTE" | "WORD" | "DWORD" | "LWORD", _) => {
-                    say!("there are no bit strings; USINT, UINT, UDINT and ULINT hold as many bits")
-                }
                 ("ARRAY" | "STRUCT", _) => say!("declare one variable for each element"),
                 ("DATE" | "TOD" | "DT" | "TIME_OF_DAY" | "DATE_AND_TIME" | "LTIME", _) => {
                     say!("the only type of times is TIME")

@@ -1,5 +1,6 @@
 //! Expressions as bits: the same values as `equations::Machine` gives them.
 
+use g7_compile::tree::transfers;
 use g7_engine::{Arith, Builtin, Cmp, number};
 use g7_equations::{Expr, MemoryId};
 use g7_model::Type;
@@ -156,6 +157,9 @@ impl Exec<'_> {
             {
                 sure(x.clone())
             }
+            (Expr::Convert(from, to, _), [Value::Whole(w)]) if transfers(*from, *to) => {
+                sure(self.transferred(*to, w))
+            }
             (Expr::Convert(_, to, _), [Value::Whole(w)]) if is_whole(*to) => {
                 Ok(self.fitted(*to, w.clone(), false))
             }
@@ -252,12 +256,47 @@ impl Exec<'_> {
                 let some = self.g().any(found);
                 Ok((value, !some))
             }
+            (Builtin::BitAnd | Builtin::BitOr | Builtin::BitXor, [Value::Whole(a), Value::Whole(b)]) => {
+                sure(self.bitwise(f, ty, a, b))
+            }
             (
                 Builtin::Shl | Builtin::Shr | Builtin::Rol | Builtin::Ror,
                 [Value::Whole(v), Value::Whole(by)],
             ) => Ok(self.shifted(f, ty, v, by)),
             _ => Err(Part::Function(f)),
         }
+    }
+
+    /// The lowest bits of a number, as many as the type has.
+    fn low_bits(&mut self, ty: Type, w: &Word) -> Vec<Signal> {
+        let n = ty.elementary().map_or(64, |row| usize::from(row.bits));
+        let wrapped = word::wrapped(self.g(), w, false);
+        (0..n).map(|i| wrapped.bits().get(i).copied().unwrap_or(Signal::FALSE)).collect()
+    }
+
+    /// The value of a type with these bits.
+    fn of_bits(ty: Type, mut bits: Vec<Signal>) -> Value {
+        let (low, high) = bounds(ty);
+        if low >= 0 {
+            bits.push(Signal::FALSE);
+        }
+        Value::Whole(Word::of(bits, 1, low, high))
+    }
+
+    fn transferred(&mut self, to: Type, w: &Word) -> Value {
+        let bits = self.low_bits(to, w);
+        Self::of_bits(to, bits)
+    }
+
+    fn bitwise(&mut self, f: Builtin, ty: Type, a: &Word, b: &Word) -> Value {
+        let (a, b) = (self.low_bits(ty, a), self.low_bits(ty, b));
+        let bits = a.into_iter().zip(b).map(|(a, b)| match f {
+            Builtin::BitAnd => self.g().and(a, b),
+            Builtin::BitOr => self.g().or(a, b),
+            _ => self.g().xor(a, b),
+        });
+        let bits = bits.collect();
+        Self::of_bits(ty, bits)
     }
 
     fn shifted(&mut self, f: Builtin, ty: Type, v: &Word, by: &Word) -> (Value, Signal) {

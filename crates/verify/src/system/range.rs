@@ -13,6 +13,7 @@
 //!   observed) is kept as it is.
 //! - Clocks that are read in another way end at [`LONGEST`], since no run lasts so long.
 
+use g7_compile::tree::transfers;
 use g7_engine::{Arith, Builtin};
 use g7_equations::{Class, Equations, Expr, MemoryId, Stmt, What, expand};
 use g7_model::Type;
@@ -65,7 +66,7 @@ pub(crate) fn bounds(ty: Type) -> (i128, i128) {
 
 /// True if values of the type are whole numbers here.
 pub(crate) fn is_whole(ty: Type) -> bool {
-    ty.is_integer() || matches!(ty, Type::Bool | Type::Time)
+    ty.is_integer() || ty.is_bits() || matches!(ty, Type::Bool | Type::Time)
 }
 
 /// The number that a word of the engine stands for.
@@ -171,10 +172,14 @@ impl Ranges {
             }
             Expr::Arith(op, ty, a, b) => fit(*ty, arith(*op, *ty, self.range(a), self.range(b))),
             Expr::Convert(from, to, a) if is_whole(*from) && is_whole(*to) => {
+                let range = self.range(a);
                 if *to == Type::Bool {
                     truth
+                } else if transfers(*from, *to) {
+                    let (low, high) = bounds(*to);
+                    if range.low >= low && range.high <= high { range } else { whole_type(*to) }
                 } else {
-                    fit(*to, self.range(a))
+                    fit(*to, range)
                 }
             }
             Expr::Convert(_, ty, _) | Expr::Trunc(_, ty, _) => whole_type(*ty),

@@ -12,9 +12,9 @@ mod values;
 use std::collections::BTreeSet;
 use std::fmt::Write;
 
-use g7_model::{Problem, Said, Span, codes, say};
+use g7_model::{Problem, Said, Span, codes};
 
-use super::form::{Block, Class, Declared, Ex, St};
+use super::form::{Block, Class, Declared, Ex, St, not_printed};
 use super::st::FAULT_COMES;
 use values::{NOW, Values, type_of};
 
@@ -77,7 +77,7 @@ fn declarations(e: &Block, variables: &[Declared], cannot: &mut BTreeSet<Said>) 
         let _ = writeln!(out, "{head}");
         for v in own {
             let Some(ty) = type_of(&v.ty) else {
-                cannot.insert(say!("a variable of type {} (S7-300 has none)", Said::foreign(&v.ty)));
+                cannot.insert(not_printed(&v.ty, "S7-300"));
                 continue;
             };
             let ty = if v.elements == 1 {

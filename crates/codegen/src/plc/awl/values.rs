@@ -40,6 +40,7 @@ pub(super) fn constant(e: &Ex) -> Option<String> {
     match e {
         Ex::Bool(b) => Some(if *b { "TRUE" } else { "FALSE" }.to_owned()),
         Ex::Int(n) => i32::try_from(*n).ok().map(|n| format!("L#{n}")),
+        Ex::Bits(_, word) => u32::try_from(*word).ok().map(|bits| format!("DW#16#{bits:X}")),
         Ex::Time(time) => time_text(*time),
         Ex::Real(x) => real_text(*x),
         _ => None,
@@ -89,7 +90,7 @@ fn real_text(x: f64) -> Option<String> {
 fn is_leaf(e: &Ex) -> bool {
     match e {
         Ex::Index(_, index) => matches!(**index, Ex::Int(_)),
-        e => matches!(e, Ex::Bool(_) | Ex::Int(_) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_)),
+        e => matches!(e, Ex::Bool(_) | Ex::Int(_) | Ex::Bits(..) | Ex::Real(_) | Ex::Time(_) | Ex::Var(_)),
     }
 }
 

@@ -7,7 +7,7 @@ use g7_iec::xml::element::Element;
 use g7_model::{Problem, Said, Span, say};
 
 use super::rewrite::{self, Refused};
-use crate::plc::form::{Block, Declared, Ex, St};
+use crate::plc::form::{Block, Declared, Ex, St, not_printed};
 use crate::plc::st;
 
 /// Elements of a table of BOOL come in words of so many.
@@ -61,7 +61,7 @@ fn type_of(ty: &str) -> Option<&'static str> {
 /// A tag with its value.
 fn tag(v: &Declared, refused: &mut Refused) -> Element {
     let ty = type_of(&v.ty).unwrap_or_else(|| {
-        refused.add(say!("a variable of type {} (Logix has none)", Said::foreign(&v.ty)));
+        refused.add(not_printed(&v.ty, "Logix"));
         "DINT"
     });
     if v.name.contains("__") {

@@ -5,7 +5,7 @@ use g7_iec::xml::element::Element;
 use g7_model::{Problem, Said, Span, say};
 
 use super::rewrite::{self, Refused};
-use crate::plc::form::{Block, Declared, Ex};
+use crate::plc::form::{Block, Declared, Ex, not_printed};
 use crate::plc::st;
 
 /// The file.
@@ -42,7 +42,7 @@ fn type_of(ty: &str) -> Option<&'static str> {
 
 fn variable(v: &Declared, refused: &mut Refused) -> Element {
     let ty = type_of(&v.ty).unwrap_or_else(|| {
-        refused.add(say!("a variable of type {} (Control Expert has none)", Said::foreign(&v.ty)));
+        refused.add(not_printed(&v.ty, "Control Expert"));
         "DINT"
     });
     let ty = if v.elements == 1 { ty.to_owned() } else { format!("ARRAY[0..{}] OF {ty}", v.elements - 1) };

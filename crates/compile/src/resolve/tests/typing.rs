@@ -6,7 +6,7 @@ use super::{ask, outcome, read, resolved};
 const DOCUMENT: &str = "
 input a, b : BOOL
 var s : SINT  var n, m : INT  var d : DINT  var l : LINT
-var us : USINT  var u : UINT  var ud : UDINT  var ul : ULINT
+var us : USINT  var u : UINT  var ud : UDINT  var ul : ULINT  var bs : BYTE  var wo : WORD
 var x, y : REAL  var z : LREAL  var t : TIME  var w : STRING  var v : STRING(10)
 var c : CTU
 const five : INT := 5
@@ -189,6 +189,37 @@ fn standard_functions() {
     ]);
 }
 
+/// IEC 61131-3:2013, 6.6.2.5.8 and 6.6.2.5.2; decision 57.
+#[test]
+fn bit_strings() {
+    check(&[
+        ("bs and wo", "BitAnd(WORD(bs), wo) : WORD"),
+        ("wo or 16#FF", "BitOr(wo, 255) : WORD"),
+        ("16#FF xor wo", "BitXor(255, wo) : WORD"),
+        ("not bs", "BitXor(bs, 255) : BYTE"),
+        ("WORD#16#F0 and WORD#16#3C", "48 : WORD"),
+        ("AND(wo, bs, wo)", "BitAnd(BitAnd(wo, WORD(bs)), wo) : WORD"),
+        ("NOT(wo)", "BitXor(wo, 65535) : WORD"),
+        ("SHL(wo, 2)", "Shl(wo, 2) : WORD"),
+        ("ul and wo", "BitAnd(LWORD(ul), LWORD(wo)) : LWORD"),
+        ("wo + 1", "(UINT(wo) Add 1) : UINT"),
+        ("wo = 16#FF", "(wo Eq 255) : BOOL"),
+        ("WORD_TO_INT(16#FFFF)", "-1 : INT"),
+        ("WORD_TO_BYTE(wo)", "BYTE(wo) : BYTE"),
+        ("BOOL_TO_WORD(a)", "WORD(a) : WORD"),
+        ("wo.3", "(BitAnd(wo, 8) Ne 0) : BOOL"),
+        ("n.15", "(BitAnd(WORD(n), 32768) Ne 0) : BOOL"),
+        ("wo.16", "G0211"),
+        ("wo and a", "G0210"),
+        ("wo and n", "G0210"),
+        ("wo and 16#1_0000", "G0211"),
+        ("wo . bs", "G0210"),
+        ("WORD_TO_REAL(wo)", "G0202"),
+        ("STRING_TO_WORD(v)", "G0202"),
+        ("a.3", "G0206"),
+    ]);
+}
+
 #[test]
 fn conversions() {
     check(&[
@@ -210,7 +241,7 @@ fn conversions() {
         ("BOOL_TO_TIME(a)", "G0202"),
         ("DINT_TO_INT(x)", "G0209"),
         ("DINT_TO_INT(70000)", "G0212"),
-        ("DINT_TO_WORD(d)", "G0202"),
+        ("DINT_TO_WORD(d)", "WORD(d) : WORD"),
         ("dint_to_int(d)", "INT(d) : INT"),
     ]);
 }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 
 use g7_model::{
     Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, NamedAction, Nanos, Problem, Section,
-    StepKind, Switch, VarDecl, codes, say,
+    StepKind, Switch, VarDecl,
 };
 
 use super::codesys::{by_flags, from_outside, is_given, steps_alone};
@@ -259,9 +259,8 @@ impl<'w> Project<'w> {
             let unused = Element::new("variable").with("name", taken.give("Unused"));
             interface.push(Element::new("localVars").child(unused.child(type_of(g7_model::Type::Bool))));
         }
-        if self.dialect.is_of_matiec() && chart.steps().next().is_none() {
-            let what = say!("the chart `{}` has no step, and a program has a body", chart.name.text);
-            self.problems.push(Problem::new(&codes::NOT_CARRIED, chart.name.at.0, what));
+        if self.dialect.is_of_matiec() {
+            self.problems.extend(crate::standard::without_steps(chart));
         }
         let mut pou =
             Element::new("pou").with("name", &chart.name.text).with("pouType", "program").child(interface);

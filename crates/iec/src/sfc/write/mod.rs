@@ -173,6 +173,7 @@ impl<'d> Exporter<'d> {
             programs.push(Program { name, chart: None, body: body(code) });
         }
         for chart in document.charts() {
+            self.problems.extend(crate::standard::without_steps(chart));
             let body = self.chart(chart);
             programs.push(Program { name: chart.name.text.to_string(), chart: Some(chart), body });
         }
