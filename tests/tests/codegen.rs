@@ -257,7 +257,7 @@ fn printed_rust_is_clean_by_clippy() {
     }
     let mut subjects = spec();
     subjects.extend(in_little_room(spec()).into_iter().step_by(9));
-    subjects.extend(random(ProfileName::Iec61131, 500, 100));
+    subjects.extend(random(ProfileName::Iec61131, 500, 300));
     let texts: Vec<String> = some(&subjects, 0, 6)
         .into_iter()
         .enumerate()

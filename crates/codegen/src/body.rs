@@ -511,7 +511,7 @@ impl Body<'_> {
         let [c, a, b] = list else { return self.none(say!("SEL without its operands")) };
         let c = self.truth(c);
         let (a, b) = (self.number(a, n), self.number(b, n));
-        Expr::If(Box::new(c), Box::new(b), Box::new(a))
+        if a == b { a } else { Expr::If(Box::new(c), Box::new(b), Box::new(a)) }
     }
 
     /// MUX: one of several by a number from 0.

@@ -169,6 +169,9 @@ impl<'a> Printer<'a> {
     }
 
     fn numbers(&mut self, rows: &[(String, usize, String)], name: &str) {
+        if rows.is_empty() {
+            return;
+        }
         self.out.push_str(if name.is_empty() { "enum {\n" } else { "typedef enum {\n" });
         for (i, (row, value, note)) in rows.iter().enumerate() {
             let comma = if i + 1 == rows.len() { "" } else { "," };

@@ -170,11 +170,10 @@ impl Places for Gen<'_> {
     }
 
     fn call(&mut self, block: FunctionBlock, memories: &[MemoryId]) -> Option<Block> {
-        let first = *memories.first()?;
-        let (of, is_own) = match self.what(first) {
-            What::Own(of) => (of, true),
-            _ => (first, false),
-        };
+        // An input that the action does not give is no memory of its own, but stands in the copy as well.
+        let own_of =
+            memories.iter().find_map(|m| if let What::Own(of) = self.what(*m) { Some(of) } else { None });
+        let (of, is_own) = (own_of.or(memories.first().copied())?, own_of.is_some());
         let (slot, _) = self.slot_of(of)?;
         let Shape::Fb(kind) = slot.shape else { return None };
         let place = if is_own { Expr::name(own(&slot)) } else { slot.place() };

@@ -37,7 +37,7 @@ pub(super) fn assignment(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {
             if rng.percent(4) {
                 return format!("{name} := {name} + 1");
             }
-            if rng.percent(2) {
+            if sight.bits && rng.percent(8) {
                 return format!("{name}.{} := {}", rng.below(3), sight.boolean(rng, 1));
             }
             format!("{name} := {}", sight.int(rng, ty, 1))

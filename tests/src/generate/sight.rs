@@ -27,6 +27,8 @@ pub(super) struct Sight {
     pub(super) scans: bool,
     /// The percentage of operations that may fault.
     pub(super) risk: usize,
+    /// True if there are bit strings and bits of numbers.
+    pub(super) bits: bool,
 }
 
 /// A duration that scans of a few milliseconds can observe.
@@ -111,12 +113,14 @@ impl Sight {
     }
 
     pub(super) fn atom(&self, rng: &mut Rng) -> String {
-        let from = match rng.weighted(&[40, 20, 22, 8, 2, 3]) {
+        if self.bits && rng.percent(6) {
+            return self.bit(rng);
+        }
+        let from = match rng.weighted(&[40, 20, 22, 8, 3]) {
             0 => &self.inputs,
             1 => &self.bools,
             2 => &self.steps,
             3 => return self.comparison(rng, 0),
-            4 if !self.ints.is_empty() => return self.bit(rng),
             _ => return rng.one(["TRUE", "FALSE"]).to_owned(),
         };
         rng.pick(from).or(self.inputs.first()).cloned().unwrap_or_else(|| "FALSE".to_owned())
@@ -202,8 +206,10 @@ impl Sight {
                 _ => format!("({name} + {})", self.int(rng, ty, d)),
             };
         }
-        match rng.below(10) {
-            9 if rng.percent(50) => self.masked(rng, ty),
+        if self.bits && rng.percent(20) {
+            return self.masked(rng, ty);
+        }
+        match rng.below(9) {
             0 => name,
             1 => format!("({name} mod 7)"),
             2 => format!("MIN({name}, {small})"),

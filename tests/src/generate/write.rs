@@ -34,6 +34,8 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
             edges: weights.moments,
             timers: weights.moments,
             risk: if rng.percent(weights.risk) { 25 } else { 0 },
+            // Drawn from a copy: charts without bits do not depend on it.
+            bits: rng.clone().percent(30),
             ..Sight::default()
         },
         targets: Targets::default(),
