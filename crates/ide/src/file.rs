@@ -268,7 +268,7 @@ pub(crate) fn floor(text: &str, byte: usize) -> usize {
 struct Clean {
     text: Box<str>,
     positions: Arc<Positions>,
-    /// What stands in the text. It is read when it is asked for first, because most changes bring no syntax error.
+    /// The document of the text. It is read when it is asked for first, because most changes bring no syntax error.
     document: OnceLock<Document>,
 }
 

@@ -161,7 +161,8 @@ impl Item {
         let Item { step, expansion, encloses, initial, ends, .. } = self;
         let same = (part, name, label, comment) == (&old.part, &old.name, &old.label, &old.comment)
             && (source, priority, steps) == (&old.source, &old.priority, &old.steps)
-            && (step, expansion, encloses, initial) == (&old.step, &old.expansion, &old.encloses, &old.initial)
+            && (step, expansion, encloses, initial)
+                == (&old.step, &old.expansion, &old.encloses, &old.initial)
             && same_ends(ends.as_ref(), old.ends.as_ref());
         let by = if same { picture.moved_from(&old.picture) } else { None }?;
         let boxes = [(*square, old.square), (*bar, old.bar), (*text, old.text)];

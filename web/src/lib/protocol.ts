@@ -11,6 +11,37 @@ export type Added = { title: string; splices: Array<Splice> };
 /** Kinds of alignment. */
 export type Alignment = 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y';
 
+/** A symbol that is drawn as another one. */
+export type Alike = {
+  /** The number of that one in the other drawing. */
+  as: number;
+  /** How far from it this one stands. */
+  by: Spot;
+  id: string;
+  part: Part;
+  area: Box;
+  from: number;
+  to: number;
+  square?: Box;
+  bar?: Box;
+  text?: Box;
+  /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
+  at?: Spot;
+  name?: string;
+  label?: string;
+  comment?: string;
+  /** The receptivity or the action as typed. */
+  source?: string;
+  priority?: number;
+  /** The names of the preceding and the succeeding steps of a transition. */
+  steps?: [Array<string>, Array<string>];
+  step?: StepKind;
+  macro?: string;
+  encloses?: Array<string>;
+  initial?: boolean;
+  ends?: [string, string];
+};
+
 /** The text before the last change; null if there was none. */
 export type Before = { text: string | null };
 
@@ -23,7 +54,7 @@ export type Binding = { element: string; attribute: string };
 /** The greatest number of passes in a scan. */
 export type Bound = { usual: number; set?: number };
 
-/** A rectangle: its left and upper edge, width, height. */
+/** A rectangle, sent as its left and upper edge, width, height. */
 export type Box = [number, number, number, number];
 
 /** Kinds of branching. */
@@ -408,52 +439,6 @@ export type Halted = { what: string; ids: Array<string>; from?: number; to?: num
 /** An explanation of a piece of the text. */
 export type Hover = { from: number; to: number; markdown: string };
 
-/** A symbol that is drawn as another one. */
-export type Alike = {
-  /** The number of that one in the other drawing. */
-  as: number;
-  /** How far from it this one stands. */
-  by: [number, number];
-  id: string;
-  part: Part;
-  area: Box;
-  from: number;
-  to: number;
-  square?: Box;
-  bar?: Box;
-  text?: Box;
-  /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
-  at?: [number, number];
-  name?: string;
-  label?: string;
-  comment?: string;
-  /** The receptivity or the action as typed. */
-  source?: string;
-  priority?: number;
-  /** The names of the preceding and the succeeding steps of a transition. */
-  steps?: [Array<string>, Array<string>];
-  step?: StepKind;
-  macro?: string;
-  encloses?: Array<string>;
-  initial?: boolean;
-  ends?: [string, string];
-};
-
-/** Symbols that follow one another in the other drawing too, and are the same there. */
-export type Kept = {
-  /** The number of the first one in the other drawing. */
-  as: number;
-  count: number;
-  /** How far they have moved. */
-  by: [number, number];
-  /** By how many code units their places in the text have moved. */
-  along: number;
-  /** Their ids, if these contain the number of a transition that has another one now. */
-  ids?: Array<string>;
-  /** With `ids`: the ends of those that have ends. */
-  ends?: Array<[string, string]>;
-};
-
 /** A symbol with its drawing. */
 export type Item = {
   /** The SVG of the symbol. */
@@ -469,7 +454,7 @@ export type Item = {
   bar?: Box;
   text?: Box;
   /** The anchor: the middle of the upper edge of a step, the middle of the bar of a transition. */
-  at?: [number, number];
+  at?: Spot;
   name?: string;
   label?: string;
   comment?: string;
@@ -487,6 +472,21 @@ export type Item = {
 
 /** The id of a part of a chart. */
 export type ItemId = string;
+
+/** Symbols that follow one another in the other drawing too, and are the same there. */
+export type Kept = {
+  /** The number of the first one in the other drawing. */
+  as: number;
+  count: number;
+  /** How far they have moved. */
+  by: Spot;
+  /** By how many code units their places in the text have moved. */
+  along: number;
+  /** Their ids, if these contain the number of a transition that has another one now. */
+  ids?: Array<string>;
+  /** With `ids`: the ends of those that have ends. */
+  ends?: Array<[string, string]>;
+};
 
 /** The lanes of a chronogram. */
 export type Lanes = {
@@ -707,6 +707,9 @@ export type SignalsForm = 'csv' | 'vcd' | 'svg';
 
 /** A replacement in a text; places are in code units. */
 export type Splice = { from: number; to: number; insert: string };
+
+/** A point or a vector, sent as its two lengths. */
+export type Spot = [number, number];
 
 /** The standard whose symbols are drawn. */
 export type Standard = 'iec60848' | 'sfc';
