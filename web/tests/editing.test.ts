@@ -42,13 +42,21 @@ chart G2 { step E * }
 chart G3 { step E * }
 `;
 
+/** A long sequence with actions, and a second one beside it. */
+const LONG = (() => {
+  const row = (from: number) => Array.from({ length: 30 }, (_, n) => from + n);
+  const steps = [...row(0), ...row(100)].map((n) => `  ${n % 100 === 0 ? 'initial ' : ''}step ${n}${n % 3 === 0 ? ' { N V }' : ''}\n`);
+  const transitions = [...row(0), ...row(100)].map((n) => `  ${n} -> ${n % 100 === 29 ? n - 29 : n + 1} when a and not b\n`);
+  return `input a, b : BOOL\noutput V : BOOL\nchart G1 {\n${steps.join('')}${transitions.join('')}}\n`;
+})();
+
 const WRONG = SMALL.replace('initial step 0', 'initial step 0\n  step 1\n  0 -> 1 when missing');
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'small.g7': SMALL, 'loop.g7': LOOP, 'wrong.g7': WRONG, 'enclosing.g7': ENCLOSING });
+  site = await playground({ 'small.g7': SMALL, 'loop.g7': LOOP, 'wrong.g7': WRONG, 'enclosing.g7': ENCLOSING, 'long.g7': LONG });
   b = await browser();
 });
 
@@ -153,6 +161,53 @@ test('everything that was done is undone, and done again', async () => {
     await drawn(page);
   }
   await becomes(page, done);
+  assert.deepEqual(page.errors, []);
+  await page.context().close();
+});
+
+/** For each symbol in the document: its box in the drawing, its texts and its name for screen readers. */
+const shown = (page: Page): Promise<Record<string, string>> =>
+  page.evaluate(() => {
+    const origin = document.querySelector('.plane')?.getBoundingClientRect();
+    const symbols = [...document.querySelectorAll('.still [data-id]')];
+    const found = Object.fromEntries(
+      symbols.map((node) => {
+        const { x, y, width, height } = node.getBoundingClientRect();
+        const box = [x - (origin?.x ?? 0), y - (origin?.y ?? 0), width, height].map((n) => n.toFixed(1));
+        return [node.getAttribute('data-id'), [...box, node.textContent, node.getAttribute('aria-label'), node.id].join(' ')];
+      }),
+    );
+    return { ...found, 'number of symbols': `${symbols.length - Object.keys(found).length} twice` };
+  });
+
+test('after gestures every symbol stands where a new drawing of the text has it', async () => {
+  const page = await open(b, site, 'long.g7', { width: 1280, height: 1600 });
+  const same = async () => {
+    await drawn(page);
+    const text = await textOf(page);
+    const other = await playground({ 'long.g7': text });
+    const fresh = await open(b, other, 'long.g7', { width: 1280, height: 1600 });
+    const [now, wanted] = [await shown(page), await shown(fresh)];
+    const both = Object.keys(wanted).filter((id) => id in now);
+    assert.ok(both.length > 80, `${both.length} symbols are in both`);
+    for (const id of both) assert.equal(now[id], wanted[id], id);
+    await fresh.context().close();
+    await other.stop();
+    return text;
+  };
+  // A branch moves what is beside it, the rest moves what is below it.
+  for (const [id, key] of [['G1/s/3', 'Tab'], ['G1/s/5', 'Delete'], ['G1/s/103', 'Tab'], ['G1/s/1', 'Delete']] as const) {
+    await click(page, id);
+    await page.keyboard.press(key);
+    await drawn(page);
+    await page.keyboard.press('Escape');
+    await same();
+  }
+  for (let n = 0; n < 4; n++) {
+    await page.keyboard.press('Control+z');
+    await same();
+  }
+  await becomes(page, LONG);
   assert.deepEqual(page.errors, []);
   await page.context().close();
 });
