@@ -113,7 +113,14 @@ test('steps are lined up by the menu', async () => {
   const page = await open(b, site, 'chart.g7');
   const ids = ['G1/s/0', 'G1/s/1'];
   await press(page, 'G1/s/1');
-  const [x, y] = await core(page, 'G1/s/1');
+  let [x, y] = await core(page, 'G1/s/1');
+  // The view may still be moving.
+  for (let still = 0; still < 3; ) {
+    await page.waitForTimeout(50);
+    const now = await core(page, 'G1/s/1');
+    still = now[0] === x && now[1] === y ? still + 1 : 0;
+    [x, y] = now;
+  }
   await page.mouse.move(x, y);
   await page.mouse.down();
   // Alone, without its transitions.

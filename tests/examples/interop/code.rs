@@ -12,7 +12,8 @@ use crate::table::{Table, Written};
 const COMPILERS: [(&str, Language, &[&str]); 6] = [
     ("gcc", Language::C, &["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only"]),
     ("clang", Language::C, &["-std=c99", "-Wall", "-Wextra", "-pedantic", "-Werror", "-fsyntax-only"]),
-    ("tcc", Language::C, &["-c", "-o", "/dev/null"]),
+    // Not to the null device: tcc takes the file away first, and as root that is the device.
+    ("tcc", Language::C, &["-c", "-o", "code.o"]),
     (
         "avr-gcc",
         Language::C,

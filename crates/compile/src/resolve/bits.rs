@@ -59,7 +59,7 @@ pub(super) fn as_number(t: Typed) -> Typed {
     }
 }
 
-/// The bit of this number, as a bit string that holds a number of the type.
+/// A bit string in which this bit alone is set.
 fn mask(ty: Type, bit: u8) -> Expr {
     constant(1 << bit, ty, Span::default())
 }
