@@ -465,7 +465,7 @@ module.exports = grammar({
           ),
         ),
       ),
-    direct: () => /%[A-Za-z][A-Za-z0-9_]*(\.[A-Za-z0-9]+)*/,
+    direct: () => /%[A-Za-z][A-Za-z0-9_]*(\.[A-Za-z0-9]+)*(:[Xx][0-9]+)?/,
     string: () => /'([^'$\n]|\$.)*'/,
     comment: () => /"([^"\\\n]|\\.)*"/,
 

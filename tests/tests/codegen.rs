@@ -258,13 +258,15 @@ fn printed_rust_is_clean_by_clippy() {
     let mut subjects = spec();
     subjects.extend(in_little_room(spec()).into_iter().step_by(9));
     subjects.extend(random(ProfileName::Iec61131, 500, 300));
-    let texts: Vec<String> = some(&subjects, 0, 6)
-        .into_iter()
+    let texts: Vec<String> = subjects
+        .iter()
         .enumerate()
         .filter_map(|(i, s)| {
-            let style = if i % 3 == 2 && s.room == Room::default() { Style::Flat } else { Style::Structured };
+            let style = if i % 9 == 6 && s.room == Room::default() { Style::Flat } else { Style::Structured };
             let printed = s.print(Language::Rust, style, "c").ok().filter(|p| p.problems.is_empty())?;
-            printed.files.last().map(|f| f.text.clone())
+            // Few charts read a number from a text, so none of them is left out.
+            let file = printed.files.last().filter(|f| i % 3 == 0 || f.text.contains("text_to_"))?;
+            Some(file.text.clone())
         })
         .collect();
     assert!(texts.len() > 40, "{} charts", texts.len());

@@ -1,6 +1,6 @@
 //! Actions and control blocks of one chart.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use g7_engine::{ControlBlock, NONE, Num};
 use g7_model::Type;
@@ -8,6 +8,7 @@ use g7_model::Type;
 use crate::build::{Gen, memory, s, state};
 use crate::chart::call;
 use crate::facts::counts;
+use crate::lets::drop_unused;
 use crate::operations::differ;
 use crate::places::{own, own_set};
 use crate::tree::{Arm, Bin, Block, Expr, Field, Stmt, Struct, Ty};
@@ -97,18 +98,11 @@ impl Gen<'_> {
     fn action_apart(&mut self, i: usize, slots: &BTreeMap<u32, Slot>) -> Block {
         self.at_action(i);
         let list = self.bodies.action_apart(i as u32);
-        let body = self.statements(&list);
-        let mut used = BTreeSet::new();
-        let mut note = |e: &Expr| {
-            if let Expr::Name(name) = e {
-                used.insert(name.clone());
-            }
-        };
-        body.iter().for_each(|s| s.walk(&mut note));
+        let mut all: Block = slots.values().flat_map(own_instance).collect();
+        all.extend(self.statements(&list));
         // An action that always writes does not ask whether it has written.
-        let is_used = |s: &Stmt| !matches!(s, Stmt::Let { name, .. } if !used.contains(name));
-        let copies = slots.values().flat_map(own_instance).filter(is_used);
-        copies.chain(body).collect()
+        drop_unused(&mut all, None);
+        all
     }
 
     fn at_action(&mut self, i: usize) {

@@ -157,7 +157,9 @@ impl Body<'_> {
             Line::If(c, then, other) => {
                 let c = self.truth(c);
                 let (then, other) = (self.inner(then), self.inner(other));
-                if then.is_empty() && !other.is_empty() {
+                if c == Expr::Bool(false) {
+                    self.out.extend(other);
+                } else if then.is_empty() && !other.is_empty() {
                     self.out.push(Stmt::If(c.not(), other, then));
                 } else if !then.is_empty() {
                     self.out.push(Stmt::If(c, then, other));
@@ -372,7 +374,7 @@ impl Body<'_> {
             }
             Term::Or(list) => {
                 let all = self.each(list, Num::Bool);
-                Expr::joined(all, |a, b| a.bin(Bin::Or, b)).unwrap_or(Expr::Bool(false))
+                Expr::joined(all, Expr::or).unwrap_or(Expr::Bool(false))
             }
             Term::Xor(a, b) => {
                 let (a, b) = (self.truth(a), self.truth(b));

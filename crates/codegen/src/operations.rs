@@ -152,6 +152,9 @@ pub(crate) fn compare(c: Cmp, n: Num, x: Expr, y: Expr) -> Expr {
     if x == y && !is_real(n) && !matches!(x, Expr::Call(..)) {
         return Expr::Bool(matches!(c, Cmp::Eq | Cmp::Le | Cmp::Ge));
     }
+    if let (Expr::Int(a, _), Expr::Int(b, _)) = (&x, &y) {
+        return Expr::Bool(g7_engine::number::ordered(c, Some(a.cmp(b))));
+    }
     let unsigned = !is_signed(n) && !is_real(n);
     // A constant stands on the right, so that it is seen below.
     if matches!(c, Cmp::Eq | Cmp::Ne) && matches!(x, Expr::Bool(_)) && !matches!(y, Expr::Bool(_)) {

@@ -11,11 +11,12 @@ pub(crate) const ALLOWED: &str = "\
     clippy::cast_lossless, clippy::cast_possible_truncation, clippy::cast_possible_wrap,
     clippy::cast_precision_loss, clippy::cast_sign_loss, clippy::collapsible_if,
     clippy::collapsible_match, clippy::doc_markdown, clippy::float_cmp,
-    clippy::many_single_char_names, clippy::match_same_arms, clippy::needless_range_loop,
-    clippy::nonminimal_bool, clippy::overly_complex_bool_expr, clippy::similar_names,
-    clippy::single_match, clippy::single_match_else, clippy::struct_excessive_bools,
-    clippy::too_many_lines, clippy::trivially_copy_pass_by_ref, clippy::unnecessary_cast,
-    clippy::unreadable_literal, clippy::useless_conversion
+    clippy::if_not_else, clippy::manual_range_contains, clippy::many_single_char_names,
+    clippy::match_same_arms, clippy::needless_range_loop, clippy::nonminimal_bool,
+    clippy::overly_complex_bool_expr, clippy::similar_names, clippy::single_match,
+    clippy::single_match_else, clippy::struct_excessive_bools, clippy::too_many_lines,
+    clippy::trivially_copy_pass_by_ref, clippy::unnecessary_cast, clippy::unreadable_literal,
+    clippy::useless_conversion
 )]
 ";
 
@@ -336,7 +337,9 @@ impl Printer {
             Expr::Ref(m, e) => format!("&{}{}", if *m { "mut " } else { "" }, self.expr(e)),
             Expr::Deref(e) => format!("*{}", self.expr(e)),
             Expr::If(c, a, b) => {
-                format!("if {} {{ {} }} else {{ {} }}", self.expr(c), self.expr(a), self.expr(b))
+                let other = self.expr(b);
+                let other = if matches!(**b, Expr::If(..)) { other } else { format!("{{ {other} }}") };
+                format!("if {} {{ {} }} else {other}", self.expr(c), self.expr(a))
             }
         }
     }

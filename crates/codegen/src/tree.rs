@@ -168,6 +168,15 @@ impl Expr {
         }
     }
 
+    /// Disjunction, short where the left side is known or the right side is FALSE.
+    pub(crate) fn or(self, other: Expr) -> Expr {
+        match (&self, &other) {
+            (Expr::Bool(false), _) => other,
+            (Expr::Bool(true), _) | (_, Expr::Bool(false)) => self,
+            _ => self.bin(Bin::Or, other),
+        }
+    }
+
     /// Joins operands in their order, if there are any. The tree is low, so that all that walks over
     /// it and puts texts together does little for each operand.
     pub(crate) fn joined(mut parts: Vec<Expr>, join: impl Fn(Expr, Expr) -> Expr) -> Option<Expr> {

@@ -10,7 +10,7 @@
 //! settled here: both readers see the same words, steps and watches.
 
 use g7_engine::{Addr, Arith, Block, Builtin, Cmp, GroupId, Service, StepId, WatchId};
-use g7_model::{Span, Type};
+use g7_model::{Holds, Span, Type};
 
 /// An expression.
 #[derive(Clone, Debug, PartialEq)]
@@ -372,19 +372,10 @@ pub fn visit_all(list: &[Stmt], f: &mut dyn FnMut(&Expr)) {
     }
 }
 
-/// Bits of a number's type and its sign; BOOL is one bit, TIME counts nanoseconds.
-fn shape(ty: Type) -> (u32, bool) {
-    match ty {
-        Type::Bool => (1, false),
-        Type::Sint => (8, true),
-        Type::Int => (16, true),
-        Type::Dint => (32, true),
-        Type::Usint | Type::Byte => (8, false),
-        Type::Uint | Type::Word => (16, false),
-        Type::Udint | Type::Dword => (32, false),
-        Type::Ulint | Type::Lword => (64, false),
-        Type::Lint | Type::Time | Type::Real | Type::Lreal | Type::String(_) | Type::Fb(_) => (64, true),
-    }
+/// The bits of a type of whole numbers, and true if it has a sign. BOOL is one bit, TIME counts nanoseconds.
+fn shape(ty: Type) -> (u8, bool) {
+    let row = ty.elementary().filter(|_| ty.is_integer() || ty.is_bits() || ty == Type::Bool);
+    row.map_or((64, true), |row| (row.bits, row.holds == Holds::Signed))
 }
 
 /// True if a conversion takes the lowest bits: between bit strings, and between these and whole

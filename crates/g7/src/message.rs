@@ -37,7 +37,7 @@ pub(crate) fn wrote(what: impl Display) {
     done(&say!("wrote"), what);
 }
 
-/// Tells what was done with something, which is named behind it.
+/// Prints what was done, and to what.
 pub(crate) fn done(word: &Said, what: impl Display) {
     talk!("{}{}{:#} {what}", style::GOOD, told(word), style::GOOD);
 }

@@ -62,7 +62,7 @@ pub fn complete(file: &File, at: usize) -> Completion {
     items.dedup();
     items.truncate(200);
     for item in &mut items {
-        // The table of words tells the effect of a word of the language.
+        // The effects of the language's words are translated in the table `words`.
         let told = words::in_language(&item.detail, file.language);
         if told != item.detail.as_str() {
             item.detail = Said::foreign(told);

@@ -17,6 +17,8 @@ pub enum Ref<'d> {
     Var(VarKey<'d>),
     /// A member of a function block.
     Member(VarKey<'d>, &'static str),
+    /// A bit of a bit string or a whole number.
+    Bit(VarKey<'d>, u8),
     /// The activity of a step.
     Active(StepKey),
     /// The time of a step.
@@ -176,10 +178,10 @@ impl<'d> Scopes<'d> {
         }
         let own = chart.and_then(|c| self.entity(Some(c), &first.text));
         if let Some(Ref::Var(key)) = own.or_else(|| self.entity(None, &first.text))
-            && let [member] = rest
-            && let Some(member) = self.member(key, &member.text)
+            && let [part] = rest
+            && let Some(part) = self.part(key, &part.text)
         {
-            return Some(Ref::Member(key, member));
+            return Some(part);
         }
         self.step_path(None, chart, names)
     }
@@ -196,9 +198,22 @@ impl<'d> Scopes<'d> {
         section.or_else(|| table.actions.get(name).map(|a| Ref::Action(chart, a)))
     }
 
-    fn member(&self, key: VarKey, name: &str) -> Option<&'static str> {
-        let Type::Fb(kind) = self.decl(key)?.ty else { return None };
-        kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| m.0)
+    /// A member of an instance, or a bit of a number.
+    fn part(&self, key: VarKey<'d>, name: &str) -> Option<Ref<'d>> {
+        match self.decl(key)?.ty {
+            Type::Fb(kind) => {
+                let member = kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name))?;
+                Some(Ref::Member(key, member.0))
+            }
+            ty if ty.is_bits() || ty.is_integer() => name.parse().ok().map(|bit| Ref::Bit(key, bit)),
+            _ => None,
+        }
+    }
+
+    /// The bit at an address such as `MW4:X3`, of a variable that is declared at `%MW4`.
+    pub fn bit_at(&self, address: &str) -> Option<Ref<'d>> {
+        let (word, bit) = address.split_once(":X")?;
+        self.part(self.at(word)?, bit)
     }
 
     fn of_chart(&self, chart: usize, names: &[Name]) -> Option<Ref<'d>> {
@@ -206,9 +221,9 @@ impl<'d> Scopes<'d> {
         let entity = self.entity(Some(chart), &first.text);
         match (entity, rest) {
             (Some(found), []) => return Some(found),
-            (Some(Ref::Var(key)), [member]) => {
-                if let Some(member) = self.member(key, &member.text) {
-                    return Some(Ref::Member(key, member));
+            (Some(Ref::Var(key)), [part]) => {
+                if let Some(part) = self.part(key, &part.text) {
+                    return Some(part);
                 }
             }
             _ => {}

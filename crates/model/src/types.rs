@@ -144,7 +144,7 @@ pub enum Holds {
     Signed,
     /// Whole numbers from 0.
     Unsigned,
-    /// Bits that are no number.
+    /// A string of bits.
     Bits,
     /// Floating-point numbers.
     Real,
@@ -226,7 +226,7 @@ impl Type {
         }
     }
 
-    /// The type of whole numbers from 0 with as many bits as a bit string.
+    /// The unsigned integer type with as many bits as this bit string: UINT for WORD.
     pub const fn unsigned(self) -> Option<Type> {
         match self {
             Type::Byte => Some(Type::Usint),
@@ -276,7 +276,7 @@ impl Type {
         matches!(self.holds(), Some(Holds::Signed | Holds::Unsigned))
     }
 
-    /// Smallest and largest value of an integer type; of a bit string, read as a number from 0.
+    /// Smallest and largest value of an integer type. A bit string counts as the unsigned integer of its bits.
     pub const fn bounds(self) -> Option<(i128, i128)> {
         match self.elementary() {
             Some(Elementary { bits, holds: Holds::Signed, .. }) => {

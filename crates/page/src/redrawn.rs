@@ -46,34 +46,34 @@ enum Sent<'a> {
     New(Whole<'a>),
 }
 
-/// Symbols that follow one another in the other drawing too, and are the same there.
+/// A run of symbols that look the same and stand in the same order in the other drawing.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct Kept<'a> {
-    /// The number of the first one in the other drawing.
+    /// The number of the first of them in the other drawing.
     r#as: usize,
     count: usize,
     /// How far they have moved.
     by: Spot,
     /// By how many code units their places in the text have moved.
     along: isize,
-    /// Their ids, if these contain the number of a transition that has another one now.
+    /// Their ids, if they have changed: an id contains the number of its transition.
     #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     ids: Vec<&'a str>,
-    /// With `ids`: the ends of those that have ends.
+    /// With `ids`: the ends of the links among them.
     #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     #[serde(skip_serializing_if = "Vec::is_empty")]
     ends: Vec<&'a [String; 2]>,
 }
 
-/// A symbol that is drawn as another one.
+/// A symbol that looks like one of the other drawing.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 struct Alike<'a> {
-    /// The number of that one in the other drawing.
+    /// The number of the symbol in the other drawing.
     r#as: usize,
-    /// How far from it this one stands.
+    /// The vector from there to this symbol.
     by: Spot,
     #[serde(flatten)]
     item: &'a Item,

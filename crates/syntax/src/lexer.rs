@@ -456,6 +456,8 @@ impl<'a> Lexer<'a> {
             match self.byte(0) {
                 b'a'..=b'z' | b'A'..=b'Z' | b'_' | b'0'..=b'9' => self.pos += 1,
                 b'.' if self.byte(1).is_ascii_alphanumeric() => self.pos += 1,
+                // A bit of a word: `%MW4:X3`.
+                b':' if matches!(self.byte(1), b'x' | b'X') && self.byte(2).is_ascii_digit() => self.pos += 2,
                 _ => return Tok::Direct,
             }
         }

@@ -84,7 +84,7 @@ pub(super) fn grammar(words: &Vocabulary) -> String {
             })]),
             "direct": rules(vec![json!({
                 "name": "variable.other.direct.g7",
-                "match": r"%[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z0-9]+)*",
+                "match": r"%[A-Za-z][A-Za-z0-9_]*(?:\.[A-Za-z0-9]+)*(?::[Xx][0-9]+)?",
             })]),
             "durations": rules(vec![json!({
                 "name": "constant.numeric.duration.g7",

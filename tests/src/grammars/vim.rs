@@ -23,7 +23,7 @@ syntax match g7Number /\<\d[0-9_]*\%(\.\d[0-9_]*\)\?\%([eE][+-]\?\d\+\)\?\>/
 syntax match g7Number /\<\%(\d\+\|[A-Z]\+\)#[+-]\?[0-9A-Za-z_.]\+/
 syntax match g7Duration /\<\d[0-9_]*\%(\.\d[0-9_]*\)\?\%(d\|h\|ms\|us\|ns\|m\|s\)[0-9a-z_.]*\>/
 syntax match g7Duration /\c\<t\%(ime\)\?#[+-]\?\d[0-9a-z_.]*/
-syntax match g7Direct /%\a\w*\%(\.\w\+\)*/
+syntax match g7Direct /%\a\w*\%(\.\w\+\)*\%(:[Xx]\d\+\)\?/
 syntax match g7Member /\.\@1<=\w\+/ contained
 syntax match g7Path /\%(\w\|`\)\@1<=\.\w\+/ contains=g7Member
 syntax match g7Complement /[A-Za-z0-9_)\]`]\@1<='\+/

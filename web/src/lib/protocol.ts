@@ -11,11 +11,11 @@ export type Added = { title: string; splices: Array<Splice> };
 /** Kinds of alignment. */
 export type Alignment = 'left' | 'top' | 'center' | 'distribute_x' | 'distribute_y';
 
-/** A symbol that is drawn as another one. */
+/** A symbol that looks like one of the other drawing. */
 export type Alike = {
-  /** The number of that one in the other drawing. */
+  /** The number of the symbol in the other drawing. */
   as: number;
-  /** How far from it this one stands. */
+  /** The vector from there to this symbol. */
   by: Spot;
   id: string;
   part: Part;
@@ -473,18 +473,18 @@ export type Item = {
 /** The id of a part of a chart. */
 export type ItemId = string;
 
-/** Symbols that follow one another in the other drawing too, and are the same there. */
+/** A run of symbols that look the same and stand in the same order in the other drawing. */
 export type Kept = {
-  /** The number of the first one in the other drawing. */
+  /** The number of the first of them in the other drawing. */
   as: number;
   count: number;
   /** How far they have moved. */
   by: Spot;
   /** By how many code units their places in the text have moved. */
   along: number;
-  /** Their ids, if these contain the number of a transition that has another one now. */
+  /** Their ids, if they have changed: an id contains the number of its transition. */
   ids?: Array<string>;
-  /** With `ids`: the ends of those that have ends. */
+  /** With `ids`: the ends of the links among them. */
   ends?: Array<[string, string]>;
 };
 

@@ -30,30 +30,6 @@ pub(crate) struct Memories {
     pub(crate) given: Names,
 }
 
-/// A type's name; texts and blocks have none here.
-pub(crate) fn type_name(ty: Type) -> &'static str {
-    match ty {
-        Type::Bool => "BOOL",
-        Type::Sint => "SINT",
-        Type::Int => "INT",
-        Type::Dint => "DINT",
-        Type::Lint => "LINT",
-        Type::Usint => "USINT",
-        Type::Uint => "UINT",
-        Type::Udint => "UDINT",
-        Type::Ulint => "ULINT",
-        Type::Byte => "BYTE",
-        Type::Word => "WORD",
-        Type::Dword => "DWORD",
-        Type::Lword => "LWORD",
-        Type::Real => "REAL",
-        Type::Lreal => "LREAL",
-        Type::Time => "TIME",
-        Type::String(_) => "STRING",
-        Type::Fb(kind) => kind.name(),
-    }
-}
-
 /// A word of the engine as a literal of its type.
 pub(crate) fn literal(ty: Type, word: u64) -> Ex {
     match ty {
@@ -187,7 +163,7 @@ impl Memories {
         self.declared.push(Declared {
             class,
             name: name.to_owned(),
-            ty: type_name(memory.ty).to_owned(),
+            ty: memory.ty.name().to_owned(),
             elements: memory.elements,
             init,
             note,
@@ -285,7 +261,7 @@ impl Memories {
                     _ => ("STEPPED", "a step came on before the evolution"),
                 };
                 self.call(id, name.into());
-                return self.internal(name, type_name(memory.ty), note);
+                return self.internal(name, memory.ty.name(), note);
             }
             What::Variable(_) => ("H", String::new(), ""),
             What::BlockClock(_) => ("HT", String::new(), "the time of a block"),

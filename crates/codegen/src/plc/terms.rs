@@ -5,7 +5,7 @@ use g7_equations::{Class, Expr, MemoryId, What};
 use g7_model::{Nanos, Said, Type, say};
 
 use super::form::{Ex, narrow};
-use super::memories::{literal, type_name};
+use super::memories::literal;
 use super::scan::Scan;
 use crate::spare::widens;
 
@@ -283,7 +283,7 @@ impl Scan<'_> {
             (Ex::Bits(_, word), ..) if to.is_bits() => literal(to, *word),
             (Ex::Int(n), ..) if to.is_real() => Ex::Real(*n as f64),
             (Ex::Int(_), ..) if !to.is_bits() => e,
-            _ => Ex::call(format!("{}_TO_{}", type_name(from), type_name(to)), vec![e]),
+            _ => Ex::call(format!("{}_TO_{}", from.name(), to.name()), vec![e]),
         }
     }
 
@@ -302,7 +302,7 @@ impl Scan<'_> {
         {
             *k = narrow(std::mem::replace(k, Ex::Bool(false)));
         }
-        Ex::call(format!("{f:?}").to_uppercase().trim_start_matches("BIT"), list)
+        Ex::call(name(f), list)
     }
 }
 
@@ -310,7 +310,7 @@ impl Scan<'_> {
     /// Shifts are those of bit strings. What they do by the width and more differs among systems,
     /// so it is never asked for.
     fn shifted(&mut self, f: Builtin, ty: Type, bits: &Expr, count: &Expr) -> Ex {
-        let string = ty.bit_string().filter(|_| !ty.is_bits()).unwrap_or(ty);
+        let string = ty.bit_string().unwrap_or(ty);
         let (true, Some(row)) = (string.is_bits(), ty.elementary()) else {
             return self.cannot_ex(say!("a shift of this type"));
         };
@@ -318,7 +318,7 @@ impl Scan<'_> {
         let as_bits = |e: Ex| if ty == string { e } else { Ex::call(format!("{ty}_TO_{string}"), vec![e]) };
         let x = as_bits(self.ex(bits));
         let by = |n: Ex| {
-            let shifted = Ex::call(format!("{f:?}").to_uppercase(), vec![x, n]);
+            let shifted = Ex::call(name(f), vec![x, n]);
             if ty == string { shifted } else { Ex::call(format!("{string}_TO_{ty}"), vec![shifted]) }
         };
         let nothing = literal(ty, 0);
@@ -339,6 +339,16 @@ impl Scan<'_> {
 /// An integer type.
 fn whole(ty: Type) -> bool {
     !ty.is_real() && !matches!(ty, Type::Bool | Type::Time | Type::String(_) | Type::Fb(_))
+}
+
+/// The name of a function there.
+fn name(f: Builtin) -> String {
+    match f {
+        Builtin::BitAnd => "AND".to_owned(),
+        Builtin::BitOr => "OR".to_owned(),
+        Builtin::BitXor => "XOR".to_owned(),
+        _ => format!("{f:?}").to_uppercase(),
+    }
 }
 
 /// A bit string as a number from 0.
@@ -370,9 +380,7 @@ fn fits(ty: Type, word: u64) -> bool {
 
 fn narrow_from(from: Type, e: Ex) -> Ex {
     match e {
-        Ex::Call(name, mut args)
-            if args.len() == 1 && name.starts_with(&format!("{}_TO_", type_name(from))) =>
-        {
+        Ex::Call(name, mut args) if args.len() == 1 && name.starts_with(&format!("{}_TO_", from.name())) => {
             args.remove(0)
         }
         other => other,

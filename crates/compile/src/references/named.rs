@@ -90,7 +90,7 @@ pub struct Use {
     pub before: usize,
 }
 
-/// A name that is read, and of which it is not known what it refers to.
+/// A name in the text that refers to nothing in the document.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Unknown {
     /// The whole word.

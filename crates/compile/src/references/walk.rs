@@ -12,7 +12,7 @@ use super::named::{Definition, Unknown, Use, Written};
 use crate::ir::ChartId;
 use crate::resolve::{Tracer, resolve_open};
 
-/// Returns every name with what it refers to, and the names of which this is not known.
+/// Returns every name with what it refers to, and the names that refer to nothing.
 pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
     let (mut unit, mut scopes, _) = resolve_open(doc, None);
     let tracer = Tracer::new(&mut unit, &mut scopes);

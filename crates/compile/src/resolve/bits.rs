@@ -40,7 +40,7 @@ pub(super) fn complement(e: Expr, at: Span) -> Typed {
     Typed { expr: joined(Builtin::BitXor, e, every, at), literal: false }
 }
 
-/// A bit string, or that of a whole type without a sign.
+/// The type itself if it is a bit string; for an unsigned integer type the bit string of its bits.
 fn string_of(ty: Type) -> Option<Type> {
     let unsigned = ty.bounds().is_some_and(|(least, _)| least == 0);
     if ty.is_bits() { Some(ty) } else { ty.bit_string().filter(|_| unsigned) }
@@ -146,7 +146,7 @@ impl Resolver<'_, '_> {
         Some(StmtKind::Assign(Target::Var(v), chosen))
     }
 
-    /// A bit where only a whole variable can be written.
+    /// Reports a bit where only a whole variable can be written.
     pub(super) fn no_bit_here<T>(&mut self, v: VarId, bit: u8, at: Span) -> Option<T> {
         let name = self.var(v).map(|v| v.name.clone())?;
         let what = say!("bit {bit} of `{name}` cannot be written here");

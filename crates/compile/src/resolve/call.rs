@@ -241,7 +241,7 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// True if bits can be transferred to values of the type, and from these.
+/// True if conversions between bit strings and this type exist.
 fn whole(ty: Type) -> bool {
     ty.is_bits() || ty.is_integer() || ty == Type::Bool
 }

@@ -236,7 +236,7 @@ impl Resolver<'_, '_> {
     }
 
     /// A member of an instance, or a bit of a number.
-    fn part(&self, v: VarId, name: &str) -> Option<Ref> {
+    pub(super) fn part(&self, v: VarId, name: &str) -> Option<Ref> {
         let bit = || Self::bit_number(name, self.var(v)?.ty).map(|bit| Ref::Bit(v, bit));
         self.member(v, name).map(|m| Ref::Member(v, m)).or_else(bit)
     }

@@ -78,7 +78,7 @@ impl<'u, 'd> Tracer<'u, 'd> {
         }
         let entity = self.visible(&first.text);
         if let (Some((Entity::Var(v), def)), Some(second)) = (&entity, names.get(1))
-            && self.0.member(*v, &second.text).is_some()
+            && self.0.part(*v, &second.text).is_some()
         {
             return Followed::whole(vec![(0, def.clone(), 0)]);
         }
@@ -93,7 +93,8 @@ impl<'u, 'd> Tracer<'u, 'd> {
 
     /// `%X12`, `%XM3`, `%X3.12`, or the variable declared at an address.
     pub(crate) fn direct(&self, text: &str) -> Vec<Traced> {
-        if let Some(v) = self.0.scopes.addresses.get(&normal_address(text)) {
+        let word = text.split_once(":X").map_or(text, |(word, _)| word);
+        if let Some(v) = self.0.scopes.addresses.get(&normal_address(word)) {
             let name = self.0.var(*v).map(|v| v.name.to_string()).unwrap_or_default();
             let (chart, own) = match name.split_once('.') {
                 Some((c, own)) if self.0.scopes.chart(c).is_some() => (Some(c.to_owned()), own.to_owned()),
@@ -141,15 +142,13 @@ impl<'u, 'd> Tracer<'u, 'd> {
         let Some(name) = names.get(k) else { return Vec::new() };
         let entity = self.0.scopes.of_chart(chart, &name.text);
         if let Some(member) = names.get(k + 1) {
-            if let Some(Entity::Var(v)) = entity
-                && matches!(self.0.var(v).map(|v| v.ty), Some(Type::Fb(_)))
-            {
-                let fits = self.0.member(v, &member.text).is_some() && k + 2 == names.len();
-                return if fits {
-                    vec![(k, self.named(Some(chart), &name.text, Entity::Var(v)), 0)]
-                } else {
-                    vec![]
-                };
+            if let Some(Entity::Var(v)) = entity {
+                if self.0.part(v, &member.text).is_some() && k + 2 == names.len() {
+                    return vec![(k, self.named(Some(chart), &name.text, Entity::Var(v)), 0)];
+                }
+                if matches!(self.0.var(v).map(|v| v.ty), Some(Type::Fb(_))) {
+                    return Vec::new();
+                }
             }
             return self.step_path(Some(chart), names, k);
         }

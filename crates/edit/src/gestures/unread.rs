@@ -1,4 +1,4 @@
-//! Where a text with syntax errors may hold a name without saying so.
+//! Finds places of a text with syntax errors that may hold a name, though no name was read there.
 //!
 //! It stands beside `rename`, which changes every name that is read. A text with errors can hold the name in two
 //! more ways: in words that were passed over, and as a name whose meaning is not known because its declaration
@@ -59,7 +59,7 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Names that are read and mean nothing that is read, but may mean this part.
+    /// Names that refer to nothing in the document, and so may refer to this part.
     fn unknown(&self) -> impl Iterator<Item = Range<usize>> {
         let may_be_step =
             |chart: &str| matches!(self.definition, Definition::Step { chart: of, .. } if of == chart);
@@ -69,7 +69,7 @@ impl Search<'_> {
             .filter(|at| self.source.text.get(at.clone()).is_some_and(|w| self.is_name(w)))
     }
 
-    /// True if a word is the name, alone or as `X12` and `%X12` have it.
+    /// True if a word is the name, or contains it as `X12` and `%X12` contain `12`.
     fn is_name(&self, word: &str) -> bool {
         let word = word.trim_matches('`');
         let one = |w: &str| w == self.name || w.strip_prefix('X') == Some(self.name);
@@ -97,7 +97,7 @@ impl Search<'_> {
         problems.any(|p| opened(p.at.bytes().start))
     }
 
-    /// True if a token stands where the text is broken, and is read as nothing.
+    /// True if a token stands in a broken place, so that nothing was read from it.
     fn passed_over(&self, token: Token) -> bool {
         let bytes = token.start..token.end;
         let covers = |at: Span| at.bytes().start <= token.start && token.end <= at.bytes().end;

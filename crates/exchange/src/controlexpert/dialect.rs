@@ -6,13 +6,13 @@ use g7_model::{Arg, Expr, ExprKind, FbKind, StandardFunction, Stmt, StmtKind, Ty
 use g7_iec::nodes;
 use g7_model::visit_mut::Visitor;
 
-/// Edges: the function of an EBOOL for each.
+/// The edges, and the function for each; its operand is an EBOOL.
 const EDGES: [(&str, UnaryOp); 2] = [("RE", UnaryOp::Rise), ("FE", UnaryOp::Fall)];
 
-/// Assignments of a Boolean that are written as calls.
+/// The calls that set and reset a Boolean.
 const ASSIGNMENTS: [(&str, bool); 2] = [("SET", true), ("RESET", false)];
 
-/// Other words that no name may be.
+/// Other reserved words.
 const WORDS: &str =
     "EBOOL NONE INITCHART CLEARCHART FREEZECHART SETSTEP RESETSTEP REAL_TRUNC DDT DFB EFB ANY_ARRAY";
 
@@ -20,7 +20,7 @@ const WORDS: &str =
 pub(super) const ACTIVE: &str = "x";
 pub(super) const TIME: &str = "t";
 
-/// A Boolean with a history, of which edges are asked, and which an address may have.
+/// The type of a Boolean with a history. An edge needs it, and a Boolean at an address has it.
 pub(super) const WITH_HISTORY: &str = "EBOOL";
 
 /// The function of an edge.
@@ -47,7 +47,7 @@ pub(super) fn type_name(ty: Type) -> Option<String> {
         | Type::Dword
         | Type::Real
         | Type::Time => Some(ty.name().to_string()),
-        // Without a number it would be another length.
+        // Without a number it has another length there.
         Type::String(length) => Some(format!("STRING[{length}]")),
         Type::Fb(
             FbKind::Ctu
@@ -65,7 +65,7 @@ pub(super) fn type_name(ty: Type) -> Option<String> {
     }
 }
 
-/// True for a function that is called as in IEC 61131-3. Functions of texts have other names there.
+/// True for a standard function that has its name of IEC 61131-3 there. Functions of texts have other names.
 pub(super) fn has_function(standard: Option<StandardFunction>, upper: &str) -> bool {
     use StandardFunction as F;
     match standard {
@@ -106,7 +106,7 @@ pub(super) fn has_function(standard: Option<StandardFunction>, upper: &str) -> b
             | F::Replace
             | F::Find,
         ) => false,
-        // Conversions; the printer tells of types that there are not.
+        // A conversion; `Speech::printed` reports types that Control Expert does not have.
         None => upper
             .split_once("_TO_")
             .is_some_and(|(from, to)| Type::named(from).is_some() && Type::named(to).is_some()),

@@ -108,7 +108,7 @@ pub(super) struct Sheet<'a> {
     pub(super) texts: Vec<String>,
     /// The sections of actions and transitions that belong to it.
     pub(super) sections: Vec<Node<'a, 'a>>,
-    /// True if macro-steps are in it: their insides use the sections too.
+    /// True if the chart has macro-steps: their expansions use its sections too.
     pub(super) shared: bool,
     pub(super) at: Range<usize>,
 }

@@ -1,4 +1,4 @@
-//! Documents as sections of Control Expert: what is read comes back, what runs runs the same.
+//! Tests of the writer for Control Expert: a document that is written and read again is the same, and runs the same.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::PathBuf;
@@ -153,7 +153,7 @@ fn an_application_is_more_than_a_section() {
     runs_the_same("mixer", &alone, &again);
 }
 
-/// A document at work.
+/// A document that runs.
 struct Run {
     compiled: Compiled,
     state: State,
@@ -287,8 +287,8 @@ fn files(folder: &[&str], ending: &str) -> Vec<PathBuf> {
     found
 }
 
-/// The charts of the conformance cases and of the examples, under the rules of Control Expert unless they are
-/// those of IEC 61131-3.
+/// The charts of the conformance cases and of the examples. Charts of the profile `iec61131` keep it; all others
+/// get the profile `unity`.
 fn charts() -> Vec<(String, Document)> {
     let mut charts = Vec::new();
     let folders = ["unity", "side-by-side", "litmus", "iec61131", "iec60848", "pl7"];

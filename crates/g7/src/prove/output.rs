@@ -24,7 +24,7 @@ fn help(out: &mut impl Write, what: &Said) -> Result<(), Failure> {
     Ok(())
 }
 
-/// That a file or a question is not decided, with the reason behind it.
+/// Prints that a question is not decided, and why.
 fn not_decided(out: &mut impl Write, name: &str, why: &str) -> Result<(), Failure> {
     let style = style::WARN;
     writeln!(out, "{name}: {style}{}{style:#}: {why}", told(&say!("not decided")))?;

@@ -8,7 +8,7 @@ use snapbox::cmd::cargo_bin;
 
 use crate::common::Folder;
 
-/// How long a word on the screen is waited for.
+/// How long to wait for a word on the screen.
 const PATIENCE: Duration = Duration::from_secs(30);
 
 /// A terminal of its own, with Helix in it.
@@ -59,7 +59,7 @@ impl Helix {
         String::from_utf8_lossy(&shown.stdout).into_owned()
     }
 
-    /// Waits until the screen is as it is to be.
+    /// Waits until the screen is as expected.
     fn until(&self, what: &str, fits: impl Fn(&str) -> bool) {
         let begun = Instant::now();
         loop {
@@ -84,7 +84,7 @@ fn helix_shows_a_problem_while_its_line_is_typed_and_renames() {
     let folder = Folder::with(crate::TEXT);
     let Some(helix) = Helix::open(&folder) else { return };
     helix.until("the chart", |screen| screen.contains("chart Main"));
-    // Line 9, behind `when`: the word becomes a name that nothing has.
+    // Line 9, behind `when`: the word becomes an unknown name.
     helix.keys(&["9", "G", "g", "l", "i"]);
     helix.keys(&["n"]);
     helix.until("the problem", |screen| screen.contains("nothing is called"));

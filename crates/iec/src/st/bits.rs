@@ -9,7 +9,7 @@ fn constant(ty: Type, bits: u64) -> String {
     format!("{ty}#16#{bits:X}")
 }
 
-/// A literal that a bit string is needed for.
+/// A literal as a constant of the bit string that is needed.
 pub(super) fn literal(text: &str, ty: Type) -> Option<String> {
     text.parse::<u64>().ok().map(|bits| constant(ty, bits))
 }

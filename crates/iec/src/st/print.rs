@@ -293,7 +293,7 @@ impl Writer<'_> {
         let at = |want: usize| args.iter().enumerate().find(|(k, a)| place(a, *k) == Some(want));
         let (bits, count) = (self.text(&at(0)?.1.value), self.text(&at(1)?.1.value));
         let Ty::Known(ty) = bits.ty else { return None };
-        // That of a bit string is written as it is.
+        // A shift of a bit string needs no conversion.
         let string = ty.bit_string()?;
         let text = format!("{string}_TO_{ty}({name}({ty}_TO_{string}({}), {}))", bits.text, count.text);
         Some(Text::operand(text, Ty::Known(ty)))

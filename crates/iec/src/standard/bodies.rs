@@ -90,10 +90,12 @@ impl<'d> Lower<'d> {
 
     /// The value of a path.
     pub(super) fn value(&mut self, path: &Path, span: Span, at: &At<'d>) -> Expr {
-        if let [one] = path.names.as_slice()
-            && let Some((_, text)) = at.locals.iter().find(|(n, _)| **n == *one.text)
+        if let Some((first, rest)) = path.names.split_first()
+            && let Some((_, text)) = at.locals.iter().find(|(n, _)| **n == *first.text)
         {
-            return nodes::name(&[text], span);
+            // Behind the name of a local variable stands the number of a bit, if anything.
+            let parts = rest.iter().map(|n| &*n.text);
+            return nodes::name(&std::iter::once(text.as_str()).chain(parts).collect::<Vec<_>>(), span);
         }
         self.note(path, false, at);
         match self.scopes.refer(at.chart, &path.names) {
@@ -108,6 +110,7 @@ impl<'d> Lower<'d> {
                 names.push(member.to_string());
                 named(&names, span)
             }
+            Some(Ref::Bit(key, bit)) if !at.function => self.bit(key, bit, path, span, at),
             Some(Ref::Active(step)) if !at.function => self.active(step, span, at, 0),
             Some(Ref::Time(step)) if !at.function && self.scan_clock => self.counted(step, false, span, at),
             Some(Ref::Seconds(step)) if !at.function && self.scan_clock => self.counted(step, true, span, at),
@@ -117,6 +120,21 @@ impl<'d> Lower<'d> {
             }
             Some(Ref::Section(chart, section)) if !at.function => {
                 self.section_value(chart, section, span, at)
+            }
+            _ => self.nothing(span, say!("`{}` has no counterpart", path.text())),
+        }
+    }
+
+    /// A bit of a variable, or of the copy that a condition reads.
+    fn bit(&mut self, key: VarKey<'d>, bit: u8, path: &Path, span: Span, at: &At<'d>) -> Expr {
+        let variable = match at.condition && self.moved.contains(&key) {
+            true => self.copy(key, span),
+            false => self.variable(key, span, at),
+        };
+        match &variable.kind {
+            ExprKind::Path(Path { names }) if names.len() == 1 => {
+                let name = names.first().map_or("", |n| &*n.text);
+                nodes::name(&[name, &bit.to_string()], span)
             }
             _ => self.nothing(span, say!("`{}` has no counterpart", path.text())),
         }
@@ -181,6 +199,10 @@ impl<'d> Lower<'d> {
     fn direct(&mut self, address: &str, span: Span, at: &At<'d>) -> Expr {
         if let Some(key) = self.scopes.at(address) {
             return self.variable(key, span, at);
+        }
+        if let Some(Ref::Bit(key, bit)) = self.scopes.bit_at(address) {
+            let path = nodes::path(&[&format!("%{address}")], span);
+            return self.bit(key, bit, &path, span, at);
         }
         if let Some(step) = self.scopes.direct_step(address) {
             return self.active(step, span, at, 0);
@@ -424,7 +446,9 @@ impl<'d> Lower<'d> {
     /// Records who reads and who writes a variable.
     fn note(&mut self, path: &Path, writes: bool, at: &At<'d>) {
         let Some(program) = at.program else { return };
-        if let Some(Ref::Var(key) | Ref::Member(key, _)) = self.scopes.refer(at.chart, &path.names) {
+        if let Some(Ref::Var(key) | Ref::Member(key, _) | Ref::Bit(key, _)) =
+            self.scopes.refer(at.chart, &path.names)
+        {
             let uses = if writes { &mut self.written } else { &mut self.read };
             uses.insert((key, program));
         }

@@ -36,7 +36,7 @@ pub(super) struct Names {
     units: Taken,
     /// The same names, in upper case: no variable of all programs has one of them.
     of_units: HashSet<String>,
-    /// Names that had to be changed: the place, the old and the new name.
+    /// Changed names: the place, the old and the new name.
     pub(super) renamed: Vec<(Span, Box<str>, String)>,
 }
 

@@ -46,7 +46,7 @@ impl Said {
         Said(Box::new(Made { text: Cow::Owned(text.into()), ..Made::default() }))
     }
 
-    /// A text of which the words are known in each language, in the order of [`Language::ALL`].
+    /// A text that is given in each language, in the order of [`Language::ALL`].
     pub fn in_each([english, french, portuguese]: [String; 3]) -> Said {
         let told = Some([french, portuguese]);
         Said(Box::new(Made { text: Cow::Owned(english), told, ..Made::default() }))

@@ -4,7 +4,7 @@
 
 use g7_model::{Said, say};
 
-/// The sentence on a place that is no TOML.
+/// The sentence for a place with invalid TOML.
 pub(super) fn no_toml(message: &str) -> Said {
     let what = message.split_once(", expected").map_or(message, |(what, _)| what);
     match what {

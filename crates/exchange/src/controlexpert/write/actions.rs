@@ -132,8 +132,8 @@ impl Writer<'_> {
         }
     }
 
-    /// A body with a condition tests it itself. The condition is looked at a little later there, so
-    /// that it may only ask what does not change in between: inputs and steps.
+    /// A body with a condition becomes an IF. It is evaluated later there than here, so that the condition may
+    /// only read what does not change in between: inputs and steps.
     fn guarded(&mut self, key: StepKey, qualifier: Qualifier, condition: &Expr, list: Vec<Stmt>) -> Stmt {
         // A pulse is one of the step and the condition together.
         if qualifier != Qualifier::N || !self.is_steady(key.0, condition) {

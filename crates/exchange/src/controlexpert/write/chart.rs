@@ -10,7 +10,7 @@ use crate::controlexpert::read::Spot;
 use crate::flow::Ends;
 
 impl<'d> Writer<'d> {
-    /// The drawing of a chart; None where it has none, which is told.
+    /// The drawing of a chart; None, with a problem reported, if the grid cannot hold it.
     pub(super) fn network(&mut self, index: usize) -> Option<Element> {
         let chart = self.speech.scopes.chart(index)?;
         let plan = self.plan(index, chart)?;

@@ -27,7 +27,7 @@ pub(super) enum Kind {
 }
 
 impl Kind {
-    /// Its element.
+    /// The name of its element.
     pub(super) fn word(self) -> &'static str {
         match self {
             Kind::Step => "step",
@@ -91,7 +91,7 @@ pub(super) fn grid(plan: &Plan) -> Grid {
     grid
 }
 
-/// The thing that is drawn next, and its place.
+/// The next thing to draw, and its place.
 #[derive(Clone, Copy, Debug)]
 enum Next {
     Step(usize, Spot),
@@ -100,7 +100,7 @@ enum Next {
     Set(usize, Spot),
 }
 
-/// The columns from the first one to one before the second.
+/// A range of columns; the end is not included.
 type Columns = (i32, i32);
 
 struct Maker<'p> {
@@ -111,13 +111,13 @@ struct Maker<'p> {
     /// The last row of each column that is taken. The cell below a transition that waits, and below
     /// a step with nothing behind it, is taken: what stood there would touch.
     bottoms: Vec<i32>,
-    /// Greater than 0 for a step where branches meet, until all of these are drawn.
+    /// For each step: how many branches that meet there are not drawn yet.
     held: Vec<u32>,
     /// Transitions that wait for their step to be drawn.
     waiting: BTreeMap<usize, Vec<usize>>,
-    /// The same for the steps that begin parallel branches.
+    /// The same for each group of steps that begin parallel branches.
     waiting_sets: BTreeMap<usize, Vec<usize>>,
-    /// The number of steps before each transition that are not drawn.
+    /// For each transition: how many steps before it are not drawn yet.
     missing: Vec<usize>,
     /// Transitions that join branches, all of whose steps are drawn.
     ready: Vec<usize>,

@@ -71,7 +71,7 @@ struct Writer<'d> {
     owners: BTreeMap<usize, StepKey>,
     action_sections: Vec<Element>,
     transition_sections: Vec<Element>,
-    /// The conditions that have got a section.
+    /// How many conditions have a section of their own so far.
     conditions: usize,
 }
 
@@ -128,7 +128,7 @@ impl Writer<'_> {
         (title, program.children(drawings).children(sections).children(transitions))
     }
 
-    /// Bodies before and behind a chart are sections of their own.
+    /// Refuses `pre` and `post`: they are sections of their own there.
     fn around(&mut self, at: g7_model::Place) {
         let what = say!(
             "a body before or behind the evolution: a section in SFC has none; write it as a section in Structured Text"

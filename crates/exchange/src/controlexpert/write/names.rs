@@ -10,7 +10,7 @@ use g7_model::{ChartItem, Document, Item, Name, Span};
 
 use crate::controlexpert::dialect;
 
-/// The letters of a name.
+/// The most letters of a name.
 const LONGEST: usize = 32;
 
 /// The names of a document.
@@ -21,7 +21,7 @@ pub(super) struct Names<'d> {
     steps: HashMap<StepKey, String>,
     /// Named actions and transition sections.
     parts: HashMap<VarKey<'d>, String>,
-    /// Names that had to be changed: the place, the old and the new name.
+    /// Changed names: the place, the old and the new name.
     pub(super) renamed: Vec<(Span, Box<str>, String)>,
 }
 
@@ -71,7 +71,7 @@ impl<'d> Names<'d> {
         self.parts.insert((home.map(|h| h.0), &name.text), text);
     }
 
-    /// A name as close to the author's as possible; the name of its chart stands before one that is taken.
+    /// The author's name if it is free; otherwise with the name of its chart before it.
     fn give(&mut self, name: &Name, wish: &str, home: &str) -> String {
         let plain = fitting(wish);
         let text = if self.taken.has(&plain) && !home.is_empty() {
@@ -85,7 +85,7 @@ impl<'d> Names<'d> {
         text
     }
 
-    /// A name of a new thing.
+    /// A free name for something that the document does not have.
     pub(super) fn free(&mut self, wish: &str) -> String {
         let plain = fitting(wish);
         let short: String = plain.chars().take(LONGEST - 6).collect();
@@ -105,7 +105,7 @@ impl<'d> Names<'d> {
     }
 }
 
-/// The name itself where the file can have it, otherwise one made of it.
+/// The name if it is valid in the file, otherwise a valid name made from it.
 pub(super) fn fitting(name: &str) -> String {
     let starts = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
     let plain =

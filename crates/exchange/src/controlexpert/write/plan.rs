@@ -11,9 +11,9 @@ pub(super) enum Undrawn {
     Source(usize),
     /// No step stands behind it.
     Sink(usize),
-    /// It joins branches, and this step of them has another transition.
+    /// The transition joins branches, but this step has another transition besides.
     Joined(usize, usize),
-    /// It begins branches, and this step of them is one of other branches too.
+    /// The transition begins branches, but this step begins other branches as well.
     Parted(usize, usize),
 }
 
@@ -31,13 +31,12 @@ pub(super) struct Plan {
     set_behind: Vec<Option<usize>>,
     /// The group of a step.
     set_of: Vec<Option<usize>>,
-    /// The steps where a drawing begins, before all others.
+    /// The steps at which drawing begins: initial and entry steps.
     first: Vec<usize>,
 }
 
 impl Plan {
-    /// The structure. `ranks` gives the order of transitions behind one step; `first` are the steps
-    /// where a drawing begins.
+    /// The structure. `ranks` gives the order of the transitions behind one step; drawing begins at the steps `first`.
     ///
     /// # Errors
     ///
@@ -83,7 +82,7 @@ impl Plan {
         }
     }
 
-    /// A joint stands directly below the steps, so that they have no other transition.
+    /// A joint stands directly below its steps. So these steps have no other transition.
     fn joins(&self, wrong: &mut Vec<Undrawn>) {
         for (number, ends) in self.transitions.iter().enumerate() {
             if ends.from.len() > 1 {
@@ -93,7 +92,7 @@ impl Plan {
         }
     }
 
-    /// A branch stands directly above its steps, so that each of them has one of them.
+    /// A branch stands directly above its steps. So a step stands below one branch only.
     fn groups(&mut self, wrong: &mut Vec<Undrawn>) {
         let mut known: HashMap<Vec<usize>, usize> = HashMap::new();
         for number in 0..self.transitions.len() {

@@ -51,7 +51,7 @@ impl Writer<'_> {
         }
     }
 
-    /// One message for all notes.
+    /// One warning for all notes of the file.
     fn notes(&mut self) {
         if let Some(first) = self.document.notes.first() {
             self.speech.leave_out(first.at.into(), say!("a note to the reader"));
@@ -255,7 +255,7 @@ fn exclude(a: &Expr, b: &Expr) -> bool {
     nodes::conjuncts(a).iter().any(|x| theirs.iter().any(|y| denied(x, y) || denied(y, x)))
 }
 
-/// Notes whether the time of a step, or anything that may be one, is asked for.
+/// Notes that the time of a step is read, or something that may be such a time.
 struct Times(bool);
 
 impl<'d> Visitor<'d> for Times {

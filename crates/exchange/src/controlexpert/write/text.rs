@@ -29,7 +29,7 @@ pub(super) struct Speech<'d> {
     pub(super) edges: BTreeSet<VarKey<'d>>,
     /// The types of the variables, by their names in the file.
     types: Known<'d>,
-    /// In a transition section: its name in the document and there, which it assigns.
+    /// Inside a transition section: the name of its result in the document, and in the file.
     pub(super) output: Option<(Box<str>, String)>,
 }
 
@@ -45,12 +45,12 @@ impl<'d> Speech<'d> {
         self.problems.push(Problem::new(code, at.0, what));
     }
 
-    /// Reports an element with a meaning that Control Expert does not have.
+    /// Refuses something that Control Expert cannot express.
     pub(super) fn cannot(&mut self, at: Place, what: Said) {
         self.say(&codes::NOT_CARRIED, at, say!("{what}: Control Expert has none"));
     }
 
-    /// Reports an element without which the chart means the same.
+    /// Warns of something that is left out, without which the chart means the same.
     pub(super) fn leave_out(&mut self, at: Place, what: Said) {
         self.say(&codes::LEFT_OUT, at, say!("{what}: Control Expert has none; it is left out"));
     }
@@ -81,7 +81,7 @@ impl<'d> Speech<'d> {
         self.printed(text, at)
     }
 
-    /// A text without types that Control Expert does not have; the printer writes conversions.
+    /// Refuses a text with a type that Control Expert does not have; conversions of the printer may name one.
     fn printed(&mut self, text: String, at: Place) -> String {
         let words = text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_' && c != '#');
         let types = words.flat_map(|w| w.split_once('#').map_or(w, |(ty, _)| ty).split("_TO_"));
@@ -159,6 +159,7 @@ impl<'d> Speech<'d> {
         match self.scopes.refer(home, &path.names) {
             Some(Ref::Var(key)) => nodes::name(&[self.names.var(key)], at),
             Some(Ref::Member(key, member)) => nodes::name(&[self.names.var(key), member], at),
+            Some(Ref::Bit(key, bit)) => nodes::name(&[self.names.var(key), &bit.to_string()], at),
             Some(Ref::Active(step)) => nodes::name(&[self.names.step(step), dialect::ACTIVE], at),
             Some(Ref::Time(step)) => nodes::name(&[self.names.step(step), dialect::TIME], at),
             Some(Ref::Section(own, section)) if depth < DEEPEST => match section.body.statements.as_slice() {
@@ -181,6 +182,9 @@ impl<'d> Speech<'d> {
     fn direct(&mut self, text: &str, at: Span) -> Expr {
         if let Some(key) = self.scopes.at(text) {
             return nodes::name(&[self.names.var(key)], at);
+        }
+        if let Some(Ref::Bit(key, bit)) = self.scopes.bit_at(text) {
+            return nodes::name(&[self.names.var(key), &bit.to_string()], at);
         }
         if let Some(step) = self.scopes.direct_step(text) {
             return nodes::name(&[self.names.step(step), dialect::ACTIVE], at);
