@@ -386,6 +386,8 @@ fn expr(e: &mut Expr, visit: OnExpr<'_>) {
         }
         ExprKind::Timer { e, .. } => expr(e, visit),
         ExprKind::Call(_, args) => args.iter_mut().for_each(|a| expr(&mut a.value, visit)),
+        ExprKind::Element(_, index, _) => index.iter_mut().for_each(|e| expr(e, visit)),
+        ExprKind::List(values) => values.iter_mut().for_each(|(_, e)| expr(e, visit)),
         ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
     }
 }

@@ -14,7 +14,7 @@ use std::collections::HashMap;
 
 use g7_engine::{Block as FunctionBlock, Builtin, Cmp, Num};
 use g7_equations::{About, Expr as Term, Memory, MemoryId, Stmt as Line, expand};
-use g7_model::{Said, Span, Type, say};
+use g7_model::{Said, Type, say};
 
 use crate::lets::{Lets, drop_unused};
 use crate::operations::{self, Made, Needs};
@@ -153,7 +153,11 @@ impl Body<'_> {
         match line {
             Line::Set(m, e) => self.set(*m, e),
             Line::SetElement(m, i, e) => self.set_element(*m, i, e),
-            Line::If(Term::Fails(e), then, other) if other.is_empty() && is_fault(then) => self.check(e),
+            Line::If(Term::Fails(e), then, other)
+                if other.is_empty() && matches!(then[..], [Line::Fault(..)]) =>
+            {
+                self.check(e);
+            }
             Line::If(c, then, other) => {
                 let c = self.truth(c);
                 let (then, other) = (self.inner(then), self.inner(other));
@@ -170,7 +174,7 @@ impl Body<'_> {
                 let outer = std::mem::take(&mut self.checked);
                 let inner = self.inner(list);
                 self.checked = outer;
-                self.out.push(while_(inner));
+                self.out.push(Stmt::repeated(inner));
                 list.iter().for_each(|l| self.changes_of(l));
             }
             Line::Exit => self.out.push(Stmt::Break),
@@ -584,19 +588,5 @@ impl Body<'_> {
             }
             _ => self.places.cannot(say!("a text of this kind")),
         }
-    }
-}
-
-fn is_fault(list: &[Line]) -> bool {
-    matches!(list, [Line::Fault(_, Span { .. })])
-}
-
-/// `while` with its condition where that comes first.
-fn while_(body: Block) -> Stmt {
-    match body.split_first() {
-        Some((Stmt::If(c, then, other), rest)) if then[..] == [Stmt::Break] && other.is_empty() => {
-            Stmt::While(c.clone().not(), rest.to_vec())
-        }
-        _ => Stmt::While(Expr::Bool(true), body),
     }
 }

@@ -275,6 +275,16 @@ pub(crate) enum Stmt {
 }
 
 impl Stmt {
+    /// `while` with its condition where that comes first.
+    pub(crate) fn repeated(body: Block) -> Stmt {
+        match body.split_first() {
+            Some((Stmt::If(c, then, other), rest)) if then[..] == [Stmt::Break] && other.is_empty() => {
+                Stmt::While(c.clone().not(), rest.to_vec())
+            }
+            _ => Stmt::While(Expr::Bool(true), body),
+        }
+    }
+
     pub(crate) fn set(to: Expr, value: Expr) -> Stmt {
         Stmt::Assign(None, to, value)
     }

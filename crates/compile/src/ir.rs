@@ -360,8 +360,8 @@ pub enum ExprKind {
     Const(Value),
     /// The value of a variable.
     Var(VarId),
-    /// An element of a table, by an index from 0 (LINT).
-    Element(VarId, Box<Expr>),
+    /// One of so many variables that follow each other from this one on, by an index from 0 (LINT).
+    Element(VarId, u32, Box<Expr>),
     /// Member of a function block instance, by its place in `FbKind::members`.
     Member(VarId, u8),
     /// Activity of a step; of a macro-step, `XM`.
@@ -425,7 +425,7 @@ impl Expr {
             | ExprKind::Section(_)
             | ExprKind::ScanTime
             | ExprKind::Random => ([None; 3], &[]),
-            ExprKind::Element(_, a)
+            ExprKind::Element(_, _, a)
             | ExprKind::Not(a)
             | ExprKind::Neg(a)
             | ExprKind::Rise(a)
@@ -480,10 +480,15 @@ pub enum BinaryOp {
 pub enum Target {
     /// A variable.
     Var(VarId),
-    /// An element of a table, by an index from 0 (LINT).
-    Element(VarId, Box<Expr>),
+    /// One of so many variables that follow each other from this one on, by an index from 0 (LINT).
+    Element(VarId, u32, Box<Expr>),
     /// An input member of an instance.
     Member(VarId, u8),
+}
+
+/// The variables of an [`ExprKind::Element`] or [`Target::Element`].
+pub fn elements(first: VarId, count: u32) -> impl Iterator<Item = VarId> {
+    (first.0..first.0 + count).map(VarId)
 }
 
 /// A statement.

@@ -24,8 +24,8 @@ pub(crate) struct Stand {
 
 /// One piece of code in translation.
 pub(crate) struct Body<'m, 'a> {
-    m: &'m mut Make<'a>,
-    out: Vec<Stmt>,
+    pub(crate) m: &'m mut Make<'a>,
+    pub(crate) out: Vec<Stmt>,
     stand: Option<Stand>,
     /// The flag of the body round this point that RETURN leaves.
     returned: Vec<Option<MemoryId>>,
@@ -118,12 +118,12 @@ impl<'a> Make<'a> {
 }
 
 impl Body<'_, '_> {
-    fn fault(&mut self, when: Expr, kind: FaultKind, at: Span) {
+    pub(crate) fn fault(&mut self, when: Expr, kind: FaultKind, at: Span) {
         self.out.extend(Stmt::when(when, vec![Stmt::Fault(kind, at)]));
     }
 
     /// A value that can be named more than once.
-    fn simple(&mut self, e: Expr, ty: Type) -> Expr {
+    pub(crate) fn simple(&mut self, e: Expr, ty: Type) -> Expr {
         match e {
             Expr::Const(..) | Expr::Text(_) | Expr::Read(_) => e,
             e => self.keep(e, ty),
@@ -172,7 +172,7 @@ impl Body<'_, '_> {
         }
     }
 
-    fn read(&mut self, ty: Type, addr: Addr) -> Expr {
+    pub(crate) fn read(&mut self, ty: Type, addr: Addr) -> Expr {
         let (memory, place) = self.m.word(addr, ty);
         let memory = self.standing(memory);
         match place {
@@ -197,9 +197,13 @@ impl Body<'_, '_> {
             ExprKind::Element { ty, base, len, index } => {
                 let index = self.expr(index);
                 let index = self.within(index, *len, at);
-                let (memory, _) = self.m.word(*base, *ty);
+                let (memory, place) = self.m.word(*base, *ty);
                 let memory = self.standing(memory);
-                if *len == 1 { Expr::Read(memory) } else { Expr::Element(memory, Box::new(index)) }
+                match place {
+                    Some(_) => Expr::Element(memory, Box::new(index)),
+                    None if *len == 1 => Expr::Read(memory),
+                    None => self.choice(*ty, *base, *len, &index),
+                }
             }
             ExprKind::Active(step) => self.m.active(step.0),
             ExprKind::WasActive(step) => Expr::Read(self.m.flag(What::Was(*step))),
@@ -280,19 +284,6 @@ impl Body<'_, '_> {
     }
 
     /// An index that lies within a table.
-    fn within(&mut self, index: Expr, len: u32, at: Span) -> Expr {
-        if let Expr::Const(_, v) = index
-            && v < u64::from(len)
-        {
-            return index;
-        }
-        let index = self.simple(index, Type::Lint);
-        let below = index.clone().compare(Cmp::Lt, Type::Lint, Expr::long(0));
-        let above = index.clone().compare(Cmp::Ge, Type::Lint, Expr::long(len.into()));
-        self.fault(below.or(above), FaultKind::Range, at);
-        index
-    }
-
     fn gate(&mut self, gate: Gate, a: &tree::Expr, b: &tree::Expr) -> Expr {
         if gate == Gate::Xor {
             let mut v = self.operands(&[a, b]).into_iter();
@@ -443,8 +434,12 @@ impl Body<'_, '_> {
                 let index_ = self.simple(index_, Type::Lint);
                 let value = self.expr(e);
                 let index = self.within(index_, *len, s.at);
-                let (memory, _) = self.m.word(*base, *ty);
-                self.store(memory, (*len > 1).then_some(index), value);
+                let (memory, place) = self.m.word(*base, *ty);
+                if place.is_some() || *len == 1 {
+                    self.store(memory, place.map(|_| index), value);
+                } else {
+                    self.store_chosen(*ty, *base, *len, index, value);
+                }
             }
             StmtKind::StoreText(addr, cap, e) => {
                 let value = self.expr(e);
@@ -484,7 +479,7 @@ impl Body<'_, '_> {
         self.out.extend(inner);
     }
 
-    fn store(&mut self, memory: MemoryId, index: Option<Expr>, value: Expr) {
+    pub(crate) fn store(&mut self, memory: MemoryId, index: Option<Expr>, value: Expr) {
         let noted = self.stand.as_ref().and_then(|s| s.own.get(&memory)).copied();
         let to = noted.map_or(memory, |o| o.0);
         self.out.push(match index {

@@ -33,6 +33,7 @@ mod change;
 mod clocks;
 mod code;
 mod control;
+mod elements;
 mod evolve;
 mod fb;
 pub mod form;

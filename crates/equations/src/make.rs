@@ -170,9 +170,15 @@ impl<'a> Make<'a> {
     fn discover_writes(&mut self, list: &[tree::Stmt]) {
         for s in list {
             match &s.kind {
-                StmtKind::Store(ty, tree::Target::Word(addr) | tree::Target::Element(addr, ..), _) => {
+                StmtKind::Store(ty, tree::Target::Word(addr), _) => {
                     let (memory, _) = self.word(*addr, *ty);
                     self.written_by_code.insert(memory);
+                }
+                StmtKind::Store(ty, tree::Target::Element(base, len, _), _) => {
+                    for k in 0..*len {
+                        let (memory, _) = self.word(Addr(base.0 + k), *ty);
+                        self.written_by_code.insert(memory);
+                    }
                 }
                 StmtKind::If(arms, other) => {
                     arms.iter().for_each(|(_, then)| self.discover_writes(then));

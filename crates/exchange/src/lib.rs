@@ -23,6 +23,7 @@
 //!   `engine` do the rest.
 #![forbid(unsafe_code)]
 
+mod arrays;
 mod classicladder;
 mod controlexpert;
 mod flow;

@@ -6,7 +6,7 @@ use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
 use g7_model::{Document, FileId, Problem};
 
-use crate::{classicladder, controlexpert, jgrafchart, l5x, mermaid, s7graph, xmi};
+use crate::{arrays, classicladder, controlexpert, jgrafchart, l5x, mermaid, s7graph, xmi};
 
 /// Tells whether a file is of a format, from its name, the name of its first XML
 /// element (if it has one) and its bytes.
@@ -159,12 +159,12 @@ impl Format {
     /// Writes a document, which must have been read without errors; None if the format is not
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
-        self.writer.map(|write| write(document))
+        self.writer.map(|write| write(&arrays::singled(document)))
     }
 
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
-        self.in_dialect.map(|write| write(document, dialect))
+        self.in_dialect.map(|write| write(&arrays::singled(document), dialect))
     }
 }
 

@@ -127,7 +127,7 @@ impl Show<'_> {
                 match target {
                     Target::Work(work) => pieces.push(self.work(index, work)),
                     Target::Path(path) => pieces.extend(self.named(path).map(|s| self.body(Some(index), s))),
-                    Target::Direct(..) => {}
+                    Target::Element(_) | Target::Direct(..) => {}
                 }
             }
             ActionKind::OnEvent { event, work } => {

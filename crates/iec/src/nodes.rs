@@ -203,6 +203,7 @@ pub fn variable(kind: VarKind, name: &str, ty: Type, at: Span) -> VarDecl {
     VarDecl {
         kind,
         names: vec![Name::new(name, at)],
+        array: None,
         ty,
         init: None,
         address: None,

@@ -19,6 +19,8 @@ pub(crate) fn height(e: &Expr) -> u32 {
             height(t1).max(height(e)).max(t2.as_ref().map_or(0, |t| height(t))) + 1
         }
         ExprKind::Call(_, args) => args.iter().map(|a| height(&a.value)).max().unwrap_or(0) + 1,
+        ExprKind::Element(_, index, _) => index.iter().map(height).max().unwrap_or(0) + 1,
+        ExprKind::List(values) => values.iter().map(|(_, e)| height(e)).max().unwrap_or(0) + 1,
         ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Bad => 1,
     }
 }
@@ -30,6 +32,8 @@ pub(crate) fn size(e: &Expr) -> usize {
         ExprKind::Binary(_, a, b) => size(a) + size(b) + 1,
         ExprKind::Timer { t1, e, t2 } => size(t1) + size(e) + t2.as_ref().map_or(0, |t| size(t)) + 1,
         ExprKind::Call(_, args) => args.iter().map(|a| size(&a.value)).sum::<usize>() + 1,
+        ExprKind::Element(_, index, _) => index.iter().map(size).sum::<usize>() + 1,
+        ExprKind::List(values) => values.iter().map(|(_, e)| size(e)).sum::<usize>() + 1,
         ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Bad => 1,
     }
 }
@@ -45,7 +49,9 @@ pub(crate) fn reads(e: &Expr, target: &Expr) -> bool {
         ExprKind::Call(path, args) => {
             args.iter().any(|a| reads(&a.value, target)) || first_name(path) == target_name(target)
         }
-        ExprKind::Path(path) => match target_name(target) {
+        ExprKind::List(values) => values.iter().any(|(_, e)| reads(e, target)),
+        ExprKind::Element(_, index, _) if index.iter().any(|e| reads(e, target)) => true,
+        ExprKind::Path(path) | ExprKind::Element(path, ..) => match target_name(target) {
             Some(name) => path.names.iter().any(|n| n.text.eq_ignore_ascii_case(name)),
             None => true,
         },
@@ -64,7 +70,7 @@ fn first_name(path: &Path) -> Option<&str> {
 /// The name by which other paths would refer to the target; None for a direct name.
 fn target_name(target: &Expr) -> Option<&str> {
     match &target.kind {
-        ExprKind::Path(path) => {
+        ExprKind::Path(path) | ExprKind::Element(path, ..) => {
             // `Chart.v` is also `v` inside the chart; a member changes with its instance.
             path.names.last().map(|n| &*n.text)
         }

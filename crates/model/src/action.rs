@@ -76,6 +76,8 @@ pub enum Situation {
 pub enum Target {
     /// A Boolean variable or a named action.
     Path(Path),
+    /// An element of an array, [`crate::ExprKind::Element`].
+    Element(Box<Expr>),
     /// `%Q0.1`, without the `%`.
     Direct(Box<str>, Place),
     /// An assignment or a block, an action without a name.
@@ -176,9 +178,9 @@ pub struct Stmt {
 /// The statements of Structured Text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum StmtKind {
-    /// `target := value`; the target is a path or a direct name.
+    /// `target := value`; the target is a path, an element of an array or a direct name.
     Assign {
-        /// A `Path` or `Direct` expression.
+        /// A `Path`, `Element` or `Direct` expression.
         target: Expr,
         /// The value.
         value: Expr,

@@ -192,6 +192,22 @@ pub enum VarKind {
     Const,
 }
 
+/// `ARRAY[1..6, 0..3] OF` (IEC 61131-3:2003, 2.3.3.1).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Array {
+    /// The least and the greatest index of each dimension.
+    pub dimensions: Vec<(Expr, Expr)>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+impl Array {
+    /// The bounds, in the order of the text.
+    pub fn bounds(&self) -> impl Iterator<Item = &Expr> {
+        self.dimensions.iter().flat_map(|(from, to)| [from, to])
+    }
+}
+
 /// A declaration of variables.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct VarDecl {
@@ -199,9 +215,11 @@ pub struct VarDecl {
     pub kind: VarKind,
     /// The names declared together, at least one.
     pub names: Vec<Name>,
-    /// Their type.
+    /// The bounds, of arrays.
+    pub array: Option<Box<Array>>,
+    /// Their type; of arrays, that of the elements.
     pub ty: Type,
-    /// Initial value; the type's zero when absent.
+    /// Initial value; the type's zero when absent. Of arrays, a [`crate::ExprKind::List`].
     pub init: Option<Expr>,
     /// Address (`%I0.0`, with its `%`) or channel, as written.
     pub address: Option<Name>,

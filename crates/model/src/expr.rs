@@ -36,6 +36,10 @@ pub enum ExprKind {
     },
     /// `f(x, n := y)`.
     Call(Path, Vec<Arg>),
+    /// An element of an array, or a bit of one: `a[i]`, `Chart.a[i, j]`, `w[i].3`.
+    Element(Path, Vec<Expr>, Option<Name>),
+    /// `[1, 2, 4(0)]`, the values of an array, each with its number of repetitions.
+    List(Vec<(u32, Expr)>),
     /// Text that could not be read; a problem has been reported.
     Bad,
 }
@@ -85,6 +89,36 @@ impl Expr {
                 t1.is_read() && e.is_read() && t2.as_ref().is_none_or(|t| t.is_read())
             }
             ExprKind::Call(_, args) => args.iter().all(|a| a.value.is_read()),
+            ExprKind::Element(_, index, _) => index.iter().all(Expr::is_read),
+            ExprKind::List(values) => values.iter().all(|(_, e)| e.is_read()),
+        }
+    }
+}
+
+impl ExprKind {
+    /// The name of the variable that it is, as other tools see it: `Chart.v`, or `a[1,2]` where the indexes are
+    /// written numbers.
+    pub fn variable(&self) -> Option<String> {
+        match self {
+            ExprKind::Path(path) => Some(path.text()),
+            ExprKind::Element(path, index, None) => {
+                let index: Option<Vec<String>> =
+                    index.iter().map(|e| e.kind.whole().map(|n| n.to_string())).collect();
+                Some(format!("{}[{}]", path.text(), index?.join(",")))
+            }
+            _ => None,
+        }
+    }
+
+    /// The number, if it is a whole one as written, with its sign.
+    pub fn whole(&self) -> Option<i128> {
+        match self {
+            ExprKind::Literal(Literal::Int(n, _)) => Some(*n),
+            ExprKind::Unary(UnaryOp::Neg, inner) => match inner.kind {
+                ExprKind::Literal(Literal::Int(n, _)) => n.checked_neg(),
+                _ => None,
+            },
+            _ => None,
         }
     }
 }

@@ -49,7 +49,7 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Chart, ChartItem, ChartKind, Document, Function, Item, Layout, NamedAction, Note, PlaceAt, Placed,
+    Array, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, NamedAction, Note, PlaceAt, Placed,
     Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path};

@@ -4,8 +4,8 @@
 //! type is taken apart field by field, so that a new field does not compile before it is listed here.
 
 use crate::{
-    Action, ActionKind, Arg, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart, ChartItem,
-    ChartKind, Document, Drive, Expr, ExprKind, Fix, Function, Item, Layout, Literal, Local, Name,
+    Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
+    ChartItem, ChartKind, Document, Drive, Expr, ExprKind, Fix, Function, Item, Layout, Literal, Local, Name,
     NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt, Placed, Plant, PlantItem, Profile,
     ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario, Section, Situation, Span, StateVar,
     Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition,
@@ -107,6 +107,7 @@ placeless! {
 
 structs! {
     Action { kind, at }
+    Array { dimensions, at }
     Arg { name, output, value }
     Arrivals { name, least, most, when, body, at }
     Binding { element, attribute, value }
@@ -138,7 +139,7 @@ structs! {
     TestStmt { kind, at }
     TextEdit { at, text }
     Transition { label, from, to, receptivity, priority, comment, on_clearing, chained, at }
-    VarDecl { kind, names, ty, init, address, inverted, retain, safe, comment, at }
+    VarDecl { kind, names, array, ty, init, address, inverted, retain, safe, comment, at }
     View { file, bindings, at }
 }
 
@@ -162,6 +163,8 @@ enums! {
         Binary(op, a, b),
         Timer { t1, e, t2 },
         Call(path, args),
+        Element(path, index, member),
+        List(values),
         Bad,
     }
     Item {
@@ -193,7 +196,7 @@ enums! {
         Exit,
         Return,
     }
-    Target { Path(path), Direct(text, at), Work(work) }
+    Target { Path(path), Element(e), Direct(text, at), Work(work) }
     TestStmtKind {
         Set(list), Pulse(target, time), Wait(time), WaitUntil(e, time), Scan(count), Expect(list),
         ExpectFault(name), Always(list, body), Force(target, value), Release(target), Restart { cold },

@@ -82,8 +82,8 @@ pub struct Rate {
 /// `drive b1 := level > 2.0`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Drive {
-    /// An input of the charts.
-    pub input: Name,
+    /// An input of the charts, or an element of an array of inputs.
+    pub input: Expr,
     /// The value that it reads.
     pub value: Expr,
     /// Where it stands.

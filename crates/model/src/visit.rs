@@ -59,7 +59,7 @@ pub trait Visitor<'d> {
 
     /// The values of a declaration.
     fn variable(&mut self, v: &'d VarDecl) {
-        self.exprs(v.init.iter().chain(&v.safe));
+        self.exprs(v.array.iter().flat_map(|a| a.bounds()).chain(&v.init).chain(&v.safe));
     }
 
     /// All items of a chart, except for the names that they declare and the steps of transitions.
@@ -97,6 +97,11 @@ pub trait Visitor<'d> {
                 t2.iter().for_each(|t| self.expr(t));
             }
             ExprKind::Call(path, args) => self.call(path, args),
+            ExprKind::Element(path, index, _) => {
+                self.path(&path.names);
+                self.exprs(index);
+            }
+            ExprKind::List(values) => self.exprs(values.iter().map(|(_, e)| e)),
         }
     }
 
@@ -192,6 +197,7 @@ pub trait Visitor<'d> {
                 self.exprs(time);
                 match target {
                     Target::Path(path) => self.path(&path.names),
+                    Target::Element(element) => self.expr(element),
                     Target::Direct(text, at) => self.direct(text, at.0),
                     Target::Work(work) => self.work(work),
                 }
@@ -229,7 +235,7 @@ pub trait Visitor<'d> {
                 self.exprs(&r.when);
             }
             PlantItem::Drive(d) => {
-                self.path(from_ref(&d.input));
+                self.expr(&d.input);
                 self.expr(&d.value);
             }
             PlantItem::On(e, block, _) => {

@@ -63,6 +63,7 @@ fn action(action: &mut Action, v: &mut impl Visitor) {
             time.iter_mut().chain(condition).for_each(|e| expr(e, v));
             match target {
                 Target::Path(p) => v.path(p, Use::Write, at),
+                Target::Element(element) => written(element, at, v),
                 Target::Work(w) => work(w, v),
                 Target::Direct(..) => {}
             }
@@ -105,18 +106,16 @@ fn stmt(s: &mut Stmt, v: &mut impl Visitor) {
     let at = s.at.0;
     match &mut s.kind {
         StmtKind::Assign { target, value } => {
-            match &mut target.kind {
-                ExprKind::Path(p) => v.path(p, Use::Write, at),
-                _ => v.expr(target),
-            }
+            written(target, at, v);
             expr(value, v);
         }
         StmtKind::Call(p, args) => {
             v.path(p, Use::Call, at);
             for arg in args {
-                match &mut arg.value.kind {
-                    ExprKind::Path(p) if arg.output => v.path(p, Use::Write, at),
-                    _ => expr(&mut arg.value, v),
+                if arg.output {
+                    written(&mut arg.value, at, v);
+                } else {
+                    expr(&mut arg.value, v);
                 }
             }
         }
@@ -156,6 +155,19 @@ fn stmt(s: &mut Stmt, v: &mut impl Visitor) {
     v.stmt(s);
 }
 
+/// Visits a variable, or an element of an array, that gets a value.
+fn written(target: &mut Expr, at: Span, v: &mut impl Visitor) {
+    match &mut target.kind {
+        ExprKind::Path(p) => v.path(p, Use::Write, at),
+        ExprKind::Element(p, index, _) => {
+            v.path(p, Use::Write, at);
+            index.iter_mut().for_each(|e| expr(e, v));
+            v.expr(target);
+        }
+        _ => v.expr(target),
+    }
+}
+
 /// Visits an expression.
 pub fn expr(e: &mut Expr, v: &mut impl Visitor) {
     let at = e.at.0;
@@ -172,6 +184,11 @@ pub fn expr(e: &mut Expr, v: &mut impl Visitor) {
             t2.iter_mut().for_each(|t| expr(t, v));
         }
         ExprKind::Call(_, args) => args.iter_mut().for_each(|a| expr(&mut a.value, v)),
+        ExprKind::Element(p, index, _) => {
+            v.path(p, Use::Read, at);
+            index.iter_mut().for_each(|e| expr(e, v));
+        }
+        ExprKind::List(values) => values.iter_mut().for_each(|(_, e)| expr(e, v)),
         ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
     }
     v.expr(e);

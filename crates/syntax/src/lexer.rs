@@ -351,9 +351,12 @@ impl<'a> Lexer<'a> {
         )
     }
 
-    /// A `.` joins names only if it directly follows one and directly precedes one.
+    /// A `.` joins names only if it directly follows one and directly precedes one; the number of a bit may
+    /// follow an index, `w[i].3`.
     fn dot(&mut self, glued: bool) -> Tok {
-        let before = glued && matches!(self.last, Tok::Word | Tok::Ticked | Tok::Int);
+        let name = matches!(self.last, Tok::Word | Tok::Ticked | Tok::Int);
+        let bit = self.last == Tok::RBracket && self.byte(1).is_ascii_digit();
+        let before = glued && (name || bit);
         self.pos += 1;
         let after =
             self.rest().chars().next().is_some_and(|c| name_start(c) || c.is_ascii_digit() || c == '`');

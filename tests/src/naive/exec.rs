@@ -72,6 +72,12 @@ impl<'a> Exec<'a> {
                 None => Ok(Typed::bool(self.s.timers.get(&key(e)).is_some_and(|t| t.q))),
             },
             ExprKind::Call(path, args) => self.call(scope, path, args),
+            ExprKind::Element(path, index, bit) => {
+                let indexes = self.indexes(scope, index)?;
+                let element = self.element(scope, path, &indexes, bit.as_ref())?;
+                self.read(&element)
+            }
+            ExprKind::List(_) => bad("a list of values"),
             ExprKind::Bad => bad("an unreadable expression"),
         }
     }
@@ -256,16 +262,13 @@ impl<'a> Exec<'a> {
 
 /// True if the left operand decides, so that the right one is not evaluated (decision 23).
 fn decides(op: BinaryOp, left: &Typed) -> Run<bool> {
-    let is_bool = left.ty == Some(Type::Bool);
     // A literal may stand for a bit string.
-    if left.ty.is_none_or(Type::is_bits) {
+    if left.ty != Some(Type::Bool) {
         return Ok(false);
     }
     match op {
-        BinaryOp::Or => left.truth(),
-        BinaryOp::And | BinaryOp::Dot => left.truth().map(|b| !b),
-        BinaryOp::Add if is_bool => left.truth(),
-        BinaryOp::Mul if is_bool => left.truth().map(|b| !b),
+        BinaryOp::Or | BinaryOp::Add => left.truth(),
+        BinaryOp::And | BinaryOp::Dot | BinaryOp::Mul => left.truth().map(|b| !b),
         _ => Ok(false),
     }
 }

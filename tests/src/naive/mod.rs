@@ -3,6 +3,7 @@
 //! everything anew in each pass. It is slow on purpose and independent: it uses neither
 //! `g7-compile` nor `g7-engine`, so an error would have to be made twice to remain unseen.
 
+mod arrays;
 mod bits;
 mod builtin;
 mod control;

@@ -89,6 +89,8 @@ pub(super) struct Scope {
     pub(super) by_name: BTreeMap<String, StepId>,
     pub(super) transitions: Vec<TransId>,
     pub(super) vars: BTreeMap<String, VarId>,
+    /// The indexes of the elements of each array, as in `[1,2]`.
+    pub(super) arrays: BTreeMap<String, Vec<String>>,
     pub(super) actions: BTreeMap<String, NamedAction>,
     pub(super) sections: BTreeMap<String, Section>,
 }
@@ -231,6 +233,16 @@ impl Model {
     }
 
     fn declare(&mut self, scope: ScopeId, v: &VarDecl) {
+        for single in self.singles(v) {
+            self.declare_single(scope, &single);
+            for (name, element) in v.names.iter().zip(&single.names).filter(|_| v.array.is_some()) {
+                let indexes = element.text[name.text.len()..].to_owned();
+                self.scopes[scope].arrays.entry(name.text.to_string()).or_default().push(indexes);
+            }
+        }
+    }
+
+    fn declare_single(&mut self, scope: ScopeId, v: &VarDecl) {
         for name in &v.names {
             let id = self.vars.len();
             let prefix = &self.scopes[scope].name;
@@ -485,6 +497,7 @@ impl Scope {
             by_name: BTreeMap::new(),
             transitions: Vec::new(),
             vars: BTreeMap::new(),
+            arrays: BTreeMap::new(),
             actions: BTreeMap::new(),
             sections: BTreeMap::new(),
         }

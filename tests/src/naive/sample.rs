@@ -172,5 +172,7 @@ fn expr<'m>(e: &'m Expr, visit: Visit<'_, 'm>) {
             visit(e);
         }
         ExprKind::Call(_, args) => args.iter().for_each(|a| expr(&a.value, visit)),
+        ExprKind::Element(_, index, _) => index.iter().for_each(|e| expr(e, visit)),
+        ExprKind::List(values) => values.iter().for_each(|(_, e)| expr(e, visit)),
     }
 }

@@ -49,6 +49,16 @@ impl Exec<'_> {
     fn statement(&mut self, scope: ScopeId, s: &Stmt) -> Run<Flow> {
         match &s.kind {
             StmtKind::Assign { target, value } => {
+                if let Some(copied) = self.copied(scope, target, value) {
+                    return copied.map(|()| Flow::Next);
+                }
+                if let ExprKind::Element(path, index, bit) = &target.kind {
+                    // The index is evaluated before the value.
+                    let indexes = self.indexes(scope, index)?;
+                    let value = self.eval(scope, value)?;
+                    let element = self.element(scope, path, &indexes, bit.as_ref())?;
+                    return self.put(Some(element), &value).map(|()| Flow::Next);
+                }
                 let value = self.eval(scope, value)?;
                 self.assign(scope, target, &value)?;
                 Ok(Flow::Next)
@@ -151,7 +161,7 @@ impl Exec<'_> {
         }
     }
 
-    fn assign(&mut self, scope: ScopeId, target: &Expr, value: &Typed) -> Run<()> {
+    pub(super) fn assign(&mut self, scope: ScopeId, target: &Expr, value: &Typed) -> Run<()> {
         let found = match &target.kind {
             ExprKind::Path(p) => {
                 if let Some(done) = self.assign_local(p, value) {
@@ -160,9 +170,17 @@ impl Exec<'_> {
                 self.m.resolve(scope, p)
             }
             ExprKind::Direct(d) => self.m.resolve_direct(d),
+            ExprKind::Element(path, index, bit) => {
+                let indexes = self.indexes(scope, index)?;
+                Some(self.element(scope, path, &indexes, bit.as_ref())?)
+            }
             _ => None,
         };
-        match found {
+        self.put(found, value)
+    }
+
+    fn put(&mut self, to: Option<Ref>, value: &Typed) -> Run<()> {
+        match to {
             Some(Ref::Var(v)) => {
                 self.s.vars[v] = value.to(self.m.vars[v].ty)?;
                 self.written.push(v);

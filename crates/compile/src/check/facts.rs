@@ -7,7 +7,7 @@ use g7_model::Type;
 use super::tree::{statements, within, written};
 use crate::ir::{
     ActionKind, Chart, ChartId, ChartRole, Expr, ExprKind, Service, Situation, StepId, StmtKind, Unit,
-    VarClass,
+    VarClass, VarId, elements,
 };
 
 pub(super) struct Facts<'u> {
@@ -84,13 +84,16 @@ impl<'u> Facts<'u> {
         way
     }
 
+    fn stays(&self, v: VarId) -> bool {
+        !self.moved.get(v.index()).copied().unwrap_or(true)
+    }
+
     /// True if an expression keeps its value from the moment when edges are taken until the
     /// receptivities have been evaluated.
     pub(super) fn steady(&self, e: &Expr) -> bool {
         let fine = match &e.kind {
-            ExprKind::Var(v) | ExprKind::Element(v, _) | ExprKind::Member(v, _) => {
-                !self.moved.get(v.index()).copied().unwrap_or(true)
-            }
+            ExprKind::Var(v) | ExprKind::Member(v, _) => self.stays(*v),
+            ExprKind::Element(v, count, _) => elements(*v, *count).all(|v| self.stays(v)),
             ExprKind::StepActive(_)
             | ExprKind::StepTime(_)
             | ExprKind::StepTenths(_)

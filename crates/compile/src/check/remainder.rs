@@ -48,6 +48,8 @@ impl<'d> Visitor<'d> for Divisions<'_> {
                 t2.iter().for_each(|t| self.expr(t));
             }
             ExprKind::Call(_, args) => self.exprs(args.iter().map(|a| &a.value)),
+            ExprKind::Element(_, index, _) => self.exprs(index),
+            ExprKind::List(values) => self.exprs(values.iter().map(|(_, e)| e)),
             ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
         }
     }

@@ -6,7 +6,7 @@ use std::mem::{Discriminant, discriminant};
 use g7_engine::Builtin;
 use g7_model::Type;
 
-use crate::ir::{ActionKind, BinaryOp, Expr, ExprKind, Stmt, StmtKind, Target, Unit, Value, VarId};
+use crate::ir::{ActionKind, BinaryOp, Expr, ExprKind, Stmt, StmtKind, Target, Unit, Value, VarId, elements};
 
 /// Every statement that runs, also those inside others, in no special order.
 pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
@@ -55,13 +55,14 @@ pub(super) fn within<'u>(list: impl IntoIterator<Item = &'u Stmt>) -> Vec<&'u St
 
 /// The variables that a statement itself writes; for a function block the instance.
 pub(super) fn written(s: &Stmt) -> Vec<VarId> {
-    let variable = |t: &Target| match t {
-        Target::Var(v) | Target::Element(v, _) | Target::Member(v, _) => *v,
+    let variables = |t: &Target| match t {
+        Target::Var(v) | Target::Member(v, _) => elements(*v, 1),
+        Target::Element(v, count, _) => elements(*v, *count),
     };
     match &s.kind {
-        StmtKind::Assign(target, _) => vec![variable(target)],
+        StmtKind::Assign(target, _) => variables(target).collect(),
         StmtKind::Fb { var, outputs, .. } => {
-            std::iter::once(*var).chain(outputs.iter().map(|(_, t)| variable(t))).collect()
+            std::iter::once(*var).chain(outputs.iter().flat_map(|(_, t)| variables(t))).collect()
         }
         StmtKind::For { var, .. } => vec![*var],
         _ => Vec::new(),
@@ -111,7 +112,7 @@ fn head(e: &Expr) -> Head<'_> {
         ExprKind::Binary(op, ..) => Head::Operator(*op),
         ExprKind::Builtin(f, _) => Head::Builtin(*f),
         ExprKind::Convert(_) | ExprKind::Trunc(_) => Head::To(form, e.ty),
-        ExprKind::Var(v) | ExprKind::Element(v, _) => Head::Of(form, v.0, 0),
+        ExprKind::Var(v) | ExprKind::Element(v, _, _) => Head::Of(form, v.0, 0),
         ExprKind::Member(v, m) => Head::Of(form, v.0, *m),
         ExprKind::StepActive(s)
         | ExprKind::StepTime(s)

@@ -70,11 +70,10 @@ impl Lower<'_> {
     fn target(&mut self, period: u32, target: &Target) -> To {
         match target {
             Target::Var(var) => To::Variable(*var),
-            Target::Element(var, index) => {
+            Target::Element(var, count, index) => {
                 let index = self.expr(period, index);
-                let v = self.unit.vars.get(var.index());
-                let (len, ty) = v.map_or((0, Type::Bool), |v| (v.elements, v.ty));
-                To::Number(ty, tree::Target::Element(self.words.addr(*var), len, index))
+                let ty = self.unit.vars.get(var.index()).map_or(Type::Bool, |v| v.ty);
+                To::Number(ty, tree::Target::Element(self.words.addr(*var), *count, index))
             }
             Target::Member(var, member) => {
                 let ty = match self.unit.vars.get(var.index()).map(|v| v.ty) {

@@ -55,10 +55,9 @@ impl Lower<'_> {
         let kind = match &e.kind {
             ir::ExprKind::Const(value) => return self.constant(e.ty, value, at),
             ir::ExprKind::Var(var) => return self.load(*var, at),
-            ir::ExprKind::Element(var, index) => {
+            ir::ExprKind::Element(var, count, index) => {
                 let index = self.boxed(period, index);
-                let len = self.unit.vars.get(var.index()).map_or(0, |v| v.elements);
-                ExprKind::Element { ty: e.ty, base: self.words.addr(*var), len, index }
+                ExprKind::Element { ty: e.ty, base: self.words.addr(*var), len: *count, index }
             }
             ir::ExprKind::Member(var, member) => {
                 ExprKind::Word(e.ty, Addr(self.words.addr(*var).0 + u32::from(*member)))

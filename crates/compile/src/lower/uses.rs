@@ -7,6 +7,7 @@
 
 use crate::ir::{
     ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, Value, VarId,
+    elements,
 };
 use g7_model::Qualifier;
 
@@ -193,8 +194,8 @@ impl<'a> Walk<'a> {
             | ExprKind::Section(_) => {}
             ExprKind::Random => self.uses.random = true,
             ExprKind::Var(v) | ExprKind::Member(v, _) => self.read(*v),
-            ExprKind::Element(v, index) => {
-                self.read(*v);
+            ExprKind::Element(v, count, index) => {
+                elements(*v, *count).for_each(|v| self.read(v));
                 self.expr(index);
             }
             ExprKind::Not(x) | ExprKind::Neg(x) | ExprKind::Convert(x) | ExprKind::Trunc(x) => self.expr(x),
@@ -219,8 +220,8 @@ impl<'a> Walk<'a> {
     fn target(&mut self, t: &'a Target) {
         match t {
             Target::Var(v) | Target::Member(v, _) => self.write(*v),
-            Target::Element(v, index) => {
-                self.write(*v);
+            Target::Element(v, count, index) => {
+                elements(*v, *count).for_each(|v| self.write(v));
                 self.expr(index);
             }
         }

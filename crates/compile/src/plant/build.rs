@@ -66,6 +66,7 @@ impl At {
         VarDecl {
             kind,
             names: vec![self.name(name)],
+            array: None,
             ty,
             init,
             address: None,

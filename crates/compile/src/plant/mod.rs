@@ -83,7 +83,7 @@ struct Maker<'d> {
     rates: Vec<Stmt>,
     rest: Vec<Stmt>,
     drives: Vec<Stmt>,
-    driven: HashMap<&'d str, Place>,
+    driven: HashMap<String, Place>,
     hidden: u32,
     unit: &'d Unit,
 }
@@ -147,7 +147,10 @@ impl<'d> Maker<'d> {
             drives: plant
                 .items
                 .iter()
-                .filter_map(|i| if let PlantItem::Drive(d) = i { Some(d.input.text.clone()) } else { None })
+                .filter_map(|i| match i {
+                    PlantItem::Drive(d) => d.input.kind.variable().map(String::into_boxed_str),
+                    _ => None,
+                })
                 .collect(),
             bindings,
             view,
@@ -336,21 +339,21 @@ impl<'d> Maker<'d> {
     }
 
     fn drive(&mut self, d: &'d g7_model::Drive) {
-        let name = &d.input;
-        if let Some(first) = self.driven.insert(&name.text, name.at) {
-            let what = say!("input `{}` is driven twice", name.text);
+        let (name, at) = (d.input.kind.variable().unwrap_or_default(), d.input.at);
+        if let Some(first) = self.driven.insert(name.clone(), at) {
+            let what = say!("input `{name}` is driven twice");
             self.rewrite.problems.push(
-                Problem::new(&codes::BAD_DRIVE, name.at.0, what).related(first.0, say!("driven here first")),
+                Problem::new(&codes::BAD_DRIVE, at.0, what).related(first.0, say!("driven here first")),
             );
             return;
         }
-        let input = self.unit.vars.iter().find(|v| v.class == VarClass::Input && *v.name == *name.text);
+        let input = self.unit.vars.iter().find(|v| v.class == VarClass::Input && *v.name == *name);
         let Some(input) = input else {
-            let what = say!("`{}` is no input of the charts", name.text);
-            self.rewrite.problems.push(Problem::new(&codes::BAD_DRIVE, name.at.0, what));
+            let what = say!("`{name}` is no input of the charts");
+            self.rewrite.problems.push(Problem::new(&codes::BAD_DRIVE, at.0, what));
             return;
         };
-        let hidden = driven(&name.text);
+        let hidden = driven(&name);
         let value = self.rewrite.expr(&d.value);
         self.vars.push(At(d.at).declare(VarKind::Output, &hidden, input.ty, None));
         self.drives.push(At(d.at).assign(&hidden, value));

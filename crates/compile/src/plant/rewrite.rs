@@ -48,6 +48,8 @@ fn repeats(e: &Expr) -> bool {
                 path.names.first().is_none_or(|n| &*n.text != RANDOM)
                     && args.iter().all(|a| count(&a.value, left))
             }
+            ExprKind::Element(_, index, _) => index.iter().all(|e| count(e, left)),
+            ExprKind::List(values) => values.iter().all(|(_, e)| count(e, left)),
             ExprKind::Path(_) | ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => true,
         };
         fine && *left > 0
@@ -76,9 +78,23 @@ impl Rewrite<'_> {
                 e: Box::new(self.expr(e)),
                 t2: t2.as_ref().map(|t| Box::new(self.expr(t))),
             },
-            ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => e.kind.clone(),
+            ExprKind::Element(_, _, None) => return self.element(at, e),
+            ExprKind::Element(..) => {
+                return self.report(&codes::WRONG_KIND, e.at, say!("a plant reads no bits of elements"));
+            }
+            ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::List(_) | ExprKind::Bad => e.kind.clone(),
         };
         at.expr(kind)
+    }
+
+    /// An element of an array of outputs, which the document of the plant has as a variable of this name.
+    fn element(&mut self, at: At, e: &Expr) -> Expr {
+        match e.kind.variable() {
+            Some(name) => at.var(&name),
+            None => {
+                self.report(&codes::NOT_CONSTANT, at.0, say!("a plant reads elements by written indexes"))
+            }
+        }
     }
 
     fn path(&mut self, at: At, path: &Path) -> Expr {

@@ -6,6 +6,7 @@ use g7_model::{
     Target as WrittenTarget, Transition as WrittenTransition, Type, codes, say,
 };
 
+use super::arrays::Element;
 use super::refer::Ref;
 use super::resolver::Resolver;
 use super::scopes::Entity;
@@ -173,6 +174,17 @@ impl Resolver<'_, '_> {
         let condition = self.optional(condition, Type::Bool);
         let governed = match target {
             WrittenTarget::Path(p) => self.governed(p)?,
+            WrittenTarget::Element(element) => {
+                let (Form::Element(path, index, None), place) = (&element.kind, element.at.0) else {
+                    let what = say!("a bit of an element cannot be driven by an action");
+                    let help = say!("assign it: `N w[1].3 := …`");
+                    return self.report(Problem::new(&codes::WRONG_KIND, element.at.0, what).help(help));
+                };
+                match self.element(path, index, place)? {
+                    Element::Known(v) => self.boolean_target(v, place)?,
+                    Element::Chosen(_, _, ty, _) => return self.needs_known(ty, place),
+                }
+            }
             WrittenTarget::Direct(text, place) => {
                 let Ref::Var(v) = self.refer_direct(text, place.0)? else {
                     let what = say!("the state of a step cannot be assigned");

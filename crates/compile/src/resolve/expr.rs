@@ -48,7 +48,9 @@ impl Resolver<'_, '_> {
             Form::Binary(..) => self.chain(e, hint),
             Form::Timer { t1, e, t2 } => self.timer(t1, e, t2.as_deref(), at),
             Form::Call(path, args) => self.call(path, args, hint, at),
-            Form::Bad => None,
+            Form::Element(path, index, bit) => self.read_element(path, index, bit.as_ref(), at),
+            // Only a declaration of an array has one, and the parser reads it nowhere else.
+            Form::List(_) | Form::Bad => None,
         }
     }
 
@@ -136,7 +138,7 @@ impl Resolver<'_, '_> {
     }
 
     /// The value behind a reference.
-    fn read(&mut self, r: Ref, at: Span) -> Option<Typed> {
+    pub(super) fn read(&mut self, r: Ref, at: Span) -> Option<Typed> {
         if !self.may_read(r, at) {
             return None;
         }

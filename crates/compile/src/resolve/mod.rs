@@ -15,6 +15,7 @@
 //! - The work is linear in the document: every lookup is by hash.
 
 mod actions;
+mod arrays;
 mod bits;
 mod bodies;
 mod call;

@@ -128,6 +128,7 @@ impl Resolver<'_, '_> {
             Entity::Section(s) => {
                 self.unit.sections.get(s.index()).map(|s| Ref::Var(s.output)).ok_or(Miss::Name(k, None))
             }
+            Entity::Array(_) => Err(Miss::NoValue(k, say!("an array"))),
             Entity::Body(_) => Err(Miss::NoValue(k, say!("an action"))),
             Entity::Function(_) => Err(Miss::NoValue(k, say!("a function"))),
         }

@@ -8,6 +8,8 @@
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
 
+use g7_model::{Span, Type};
+
 use crate::ir::{BodyId, ChartId, FunctionId, SectionId, StepId, VarId};
 
 /// The meaning of a name of a file or chart, except charts and steps.
@@ -15,6 +17,8 @@ use crate::ir::{BodyId, ChartId, FunctionId, SectionId, StepId, VarId};
 pub(super) enum Entity {
     /// A variable.
     Var(VarId),
+    /// An array: its row of [`Scopes::arrays`].
+    Array(u32),
     /// A named action.
     Body(BodyId),
     /// A transition section; read as its output.
@@ -54,6 +58,23 @@ pub(super) struct ChartScope<'d> {
     pub(super) proper: bool,
 }
 
+/// An array.
+#[derive(Clone, Debug)]
+pub(super) struct Array {
+    /// Its name as users write it from elsewhere.
+    pub(super) name: Box<str>,
+    /// Its first element.
+    pub(super) first: VarId,
+    /// The number of its elements.
+    pub(super) count: u32,
+    /// The least index and the number of indexes of each dimension.
+    pub(super) dimensions: Vec<(i64, u32)>,
+    /// Type of the elements.
+    pub(super) ty: Type,
+    /// Its declaration.
+    pub(super) at: Span,
+}
+
 /// The names of a document; `resolve` makes them, queries read them.
 #[derive(Clone, Debug, Default)]
 pub struct Scopes<'d> {
@@ -61,6 +82,8 @@ pub struct Scopes<'d> {
     pub(super) charts: Vec<ChartScope<'d>>,
     pub(super) chart_names: HashMap<&'d str, ChartId>,
     pub(super) step_homes: HashMap<&'d str, Homes>,
+    /// Arrays, in the order of the text.
+    pub(super) arrays: Vec<Array>,
     /// Direct addresses, upper case without the `%`.
     pub(super) addresses: HashMap<String, VarId>,
     /// Outputs of sections: written by their section only.

@@ -111,6 +111,9 @@ impl Resolver<'_, '_> {
         if let Some(step) = self.step_bit(target) {
             return self.preset(step, target.at.0, value);
         }
+        if let Some(kind) = self.whole_arrays(target, value) {
+            return kind;
+        }
         if let Some((v, bit)) = self.bit_target(target) {
             let value = self.value(value, Type::Bool)?;
             return self.assign_bit(v, bit, value, target.at.0);
@@ -129,6 +132,7 @@ impl Resolver<'_, '_> {
         let r = match &target.kind {
             Form::Path(path) if path.names.len() > 1 => self.found(&path.names)?,
             Form::Direct(text) if text.contains(":X") => self.refer_direct(text, target.at.0)?,
+            Form::Element(path, index, Some(bit)) => return self.element_bit(path, index, bit, target.at.0),
             _ => return None,
         };
         if let Ref::Bit(v, bit) = r { Some((v, bit)) } else { None }
@@ -320,6 +324,7 @@ impl Resolver<'_, '_> {
                 names => self.refer(names)?,
             },
             Form::Direct(text) => self.refer_direct(text, at)?,
+            Form::Element(path, index, None) => return self.element_target(path, index, at),
             Form::Bad => return None,
             _ => {
                 let what = say!("only a variable can be assigned");
@@ -340,7 +345,7 @@ impl Resolver<'_, '_> {
     }
 
     /// A reference as a target; reports a problem if it is read-only here.
-    fn writable(&mut self, r: Ref, at: Span) -> Option<(Target, Type)> {
+    pub(super) fn writable(&mut self, r: Ref, at: Span) -> Option<(Target, Type)> {
         match r {
             Ref::Var(v) => {
                 let (class, ty) = self.var(v).map(|v| (v.class, v.ty))?;

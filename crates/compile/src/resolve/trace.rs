@@ -202,7 +202,7 @@ impl<'u, 'd> Tracer<'u, 'd> {
         let chart = chart.and_then(|c| self.0.unit.charts.get(c.index())).map(|c| c.name.to_string());
         let name = name.to_owned();
         match entity {
-            Entity::Var(_) => Definition::Variable { chart, name },
+            Entity::Var(_) | Entity::Array(_) => Definition::Variable { chart, name },
             Entity::Body(_) => Definition::Action { chart, name },
             Entity::Section(_) => Definition::Section { chart, name },
             Entity::Function(_) => Definition::Function(name),

@@ -1,6 +1,8 @@
 //! Variables: their place in the name spaces, their types, their initial values.
 
-use g7_model::{Expr as Written, Name, Problem, Said, Span, Type, VarDecl, VarKind, codes, say};
+use g7_model::{
+    Expr as Written, ExprKind as Form, Literal, Name, Problem, Said, Span, Type, VarDecl, VarKind, codes, say,
+};
 
 use super::resolver::{Frame, Resolver, Role};
 use super::scopes::{Entity, normal_address};
@@ -32,6 +34,7 @@ impl<'d> Resolver<'_, 'd> {
     fn defined_at(&self, entity: Entity) -> Span {
         match entity {
             Entity::Var(v) => self.var(v).map(|v| v.at),
+            Entity::Array(n) => self.scopes.arrays.get(n as usize).map(|a| a.at),
             Entity::Body(b) => self.unit.bodies.get(b.index()).map(|b| b.at),
             Entity::Section(s) => self.unit.sections.get(s.index()).map(|s| s.at),
             Entity::Function(f) => self.unit.functions.get(f.index()).map(|f| f.at),
@@ -51,6 +54,9 @@ impl<'d> Resolver<'_, 'd> {
             VarKind::Var => VarClass::Internal,
             VarKind::Const => VarClass::Const,
         };
+        if decl.array.is_some() {
+            return self.declare_arrays(chart, decl, class);
+        }
         let mut ids = Vec::new();
         for name in &decl.names {
             let qualified = self.qualified(chart, &name.text);
@@ -61,6 +67,7 @@ impl<'d> Resolver<'_, 'd> {
             self.add_var(qualified, class, decl.ty, name.at.0);
             if class == VarClass::Const {
                 self.pending.insert(id);
+                self.known_bound(id, decl);
             }
             self.place_at_address(id, decl);
             if let Some(v) = self.unit.vars.get_mut(id.index()) {
@@ -72,6 +79,16 @@ impl<'d> Resolver<'_, 'd> {
             ids.push(id);
         }
         ids
+    }
+
+    /// A whole number as the value of a constant is known at once, since bounds of arrays may name it.
+    fn known_bound(&mut self, id: VarId, decl: &VarDecl) {
+        if let Some(Form::Literal(Literal::Int(n, _))) = decl.init.as_ref().map(|e| &e.kind)
+            && let Some(v) = self.unit.vars.get_mut(id.index())
+            && v.ty.is_integer()
+        {
+            v.init = Value::Int(*n);
+        }
     }
 
     /// Function blocks are variables of a chart and have no initial value.
@@ -151,6 +168,9 @@ impl<'d> Resolver<'_, 'd> {
         if matches!(decl.ty, Type::Fb(_)) {
             return;
         }
+        if decl.array.is_some() {
+            return self.give_elements(chart, decl, ids);
+        }
         let init = decl.init.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         let safe = decl.safe.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         for id in ids {
@@ -166,7 +186,7 @@ impl<'d> Resolver<'_, 'd> {
     }
 
     /// Resolves a value that is known before the chart runs.
-    fn constant(&mut self, chart: Option<ChartId>, e: &Written, ty: Type) -> Option<Value> {
+    pub(super) fn constant(&mut self, chart: Option<ChartId>, e: &Written, ty: Type) -> Option<Value> {
         let frame = Frame { chart, role: Role::Constant, ..Frame::default() };
         let value = self.within(frame, |r| r.value(e, ty))?;
         match value.kind {

@@ -238,6 +238,7 @@ fn qualified(q: Qualifier, time: Option<&Expr>) -> String {
 fn target_lines(target: &Target) -> Vec<Line> {
     match target {
         Target::Path(p) => vec![Line::plain(clean(&p.text()))],
+        Target::Element(element) => vec![set(element)],
         Target::Direct(d, _) => vec![Line::plain(format!("%{}", clean(d)))],
         Target::Work(work) => body(work.statements()),
     }

@@ -93,8 +93,25 @@ impl Setter {
                 }
             }
             ExprKind::Call(p, args) => self.call(p, args, depth),
+            ExprKind::Element(p, index, member) => {
+                self.text(&path(p));
+                self.indexes(index.iter(), depth);
+                if let Some(member) = member {
+                    self.text(&format!(".{}", clean(&member.text)));
+                }
+            }
+            ExprKind::List(values) => self.indexes(values.iter().map(|(_, e)| e), depth),
             ExprKind::Bad => self.text("?"),
         }
+    }
+
+    /// `[i, j]`.
+    fn indexes<'e>(&mut self, list: impl Iterator<Item = &'e Expr>, depth: u32) {
+        for (i, e) in list.enumerate() {
+            self.text(if i == 0 { "[" } else { ", " });
+            self.put(e, Level::Sum, depth + 1);
+        }
+        self.text("]");
     }
 
     /// Writes the complement: an overline over the whole operand, one level above the overlines
@@ -204,6 +221,8 @@ fn level(e: &Expr) -> Level {
         | ExprKind::Path(_)
         | ExprKind::Direct(_)
         | ExprKind::Call(..)
+        | ExprKind::Element(..)
+        | ExprKind::List(_)
         | ExprKind::Bad => Level::Atom,
     }
 }

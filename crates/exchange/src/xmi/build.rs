@@ -66,6 +66,7 @@ impl<'a> Builder<'_, 'a> {
             Some(VarDecl {
                 kind,
                 names: vec![Name::new(self.names.var(number), at)],
+                array: None,
                 ty: var.ty,
                 init: None,
                 address: None,

@@ -91,6 +91,7 @@ fn action(a: &Action) -> String {
             let target = match target {
                 Target::Path(p) => p.text(),
                 Target::Work(w) => work(w),
+                Target::Element(element) => format!("{:?}", element.kind),
                 Target::Direct(..) => "?".to_string(),
             };
             format!("{} {target}", qualifier.name())

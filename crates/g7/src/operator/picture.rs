@@ -147,7 +147,8 @@ fn measured<'p>(plant: &'p Plant, bench: &Bench, made: &Bench) -> (Vec<&'p str>,
         let PlantItem::Drive(drive) = item else { continue };
         let ExprKind::Path(path) = &drive.value.kind else { continue };
         let [state] = path.names.as_slice() else { continue };
-        let (Some(input), Some(known)) = (bench.item(&drive.input.text), made.item(&state.text)) else {
+        let input = drive.input.kind.variable().and_then(|name| bench.item(&name));
+        let (Some(input), Some(known)) = (input, made.item(&state.text)) else {
             continue;
         };
         if let (Role::Input(index), Role::Plant, true) = (input.role, known.role, input.ty == known.ty) {

@@ -41,15 +41,17 @@ impl<'s> Shower<'s> {
     /// An operand as written behind an operator, if the expression is one.
     fn operand(&self, e: &Expr) -> Option<String> {
         match &e.kind {
-            ExprKind::Literal(_) | ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Call(..) => {
-                Some((self.spell)(e))
-            }
+            ExprKind::Literal(_)
+            | ExprKind::Path(_)
+            | ExprKind::Element(..)
+            | ExprKind::Direct(_)
+            | ExprKind::Call(..) => Some((self.spell)(e)),
             ExprKind::Timer { .. } => Some((self.spell)(e)),
             ExprKind::Unary(UnaryOp::Rise | UnaryOp::Fall, _) => Some((self.spell)(e)),
             ExprKind::Unary(UnaryOp::Neg, inner) if matches!(inner.kind, ExprKind::Literal(_)) => {
                 Some((self.spell)(e))
             }
-            ExprKind::Unary(..) | ExprKind::Binary(..) | ExprKind::Bad => None,
+            ExprKind::Unary(..) | ExprKind::Binary(..) | ExprKind::List(_) | ExprKind::Bad => None,
         }
     }
 

@@ -126,8 +126,10 @@ impl Shower<'_> {
                     true
                 }
             },
-            ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Call(..) => (self.boolean)(e),
-            ExprKind::Literal(_) | ExprKind::Bad => false,
+            ExprKind::Path(_) | ExprKind::Element(..) | ExprKind::Direct(_) | ExprKind::Call(..) => {
+                (self.boolean)(e)
+            }
+            ExprKind::Literal(_) | ExprKind::List(_) | ExprKind::Bad => false,
         }
     }
 

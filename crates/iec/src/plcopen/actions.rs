@@ -166,7 +166,7 @@ fn action<'a>(maker: &mut Maker<'_, '_, '_, 'a>, draft: &mut Draft<'_, 'a>, node
     // A body with a condition tests it in its own first line.
     let condition = match &target {
         Target::Path(path) if !is_action(maker, draft, path) => draft.guard.clone(),
-        Target::Direct(..) => draft.guard.clone(),
+        Target::Direct(..) | Target::Element(_) => draft.guard.clone(),
         Target::Path(_) | Target::Work(_) => None,
     };
     Some(Action { kind: ActionKind::Qualified { qualifier, time, target, condition }, at: at.into() })

@@ -219,6 +219,17 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
                 }
                 ExprKind::Call(path, self.args(args, place))
             }
+            ExprKind::Element(path, index, member) => {
+                let names = match self.find(&path.names, place) {
+                    Found::Path(names, _) => names,
+                    Found::Unit(_) | Found::Action(..) => path.names,
+                };
+                let index = index.into_iter().map(|e| self.expr(e, place)).collect();
+                ExprKind::Element(Path { names }, index, member)
+            }
+            ExprKind::List(values) => {
+                ExprKind::List(values.into_iter().map(|(n, e)| (n, self.expr(e, place))).collect())
+            }
             kind @ (ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad) => kind,
         };
         Expr { kind, at: expr.at }

@@ -121,6 +121,7 @@ fn declaration(
     Some(VarDecl {
         kind,
         names: vec![name],
+        array: None,
         ty,
         init,
         address: address.filter(|_| kind != VarKind::Const),

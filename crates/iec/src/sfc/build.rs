@@ -410,6 +410,7 @@ fn enumeration(name: &Name, number: i128) -> VarDecl {
     VarDecl {
         kind: VarKind::Const,
         names: vec![name.clone()],
+        array: None,
         ty: Type::Int,
         init: Some(Expr { kind: ExprKind::Literal(Literal::Int(number, None)), at }),
         address: None,

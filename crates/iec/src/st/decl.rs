@@ -322,6 +322,7 @@ impl Maker<'_> {
         let decl = VarDecl {
             kind,
             names: vec![name.clone()],
+            array: None,
             ty,
             init: value,
             address: self.address.clone().filter(|_| kind != VarKind::Const),

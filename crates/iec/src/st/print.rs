@@ -160,8 +160,14 @@ impl Writer<'_> {
             ExprKind::Unary(op, inner) => self.unary(*op, inner),
             ExprKind::Binary(op, a, b) => self.binary(*op, a, b),
             ExprKind::Call(path, args) => self.call(path, args),
+            ExprKind::Element(path, index, _) => {
+                let index: Vec<String> = index.iter().map(|e| self.plain(e)).collect();
+                Text::operand(format!("{}[{}]", self.path(path).text, index.join(", ")), Ty::Unknown)
+            }
             // `standard` has removed these, so they do not occur here.
-            ExprKind::Timer { .. } | ExprKind::Bad => Text::operand("FALSE".into(), Ty::Unknown),
+            ExprKind::Timer { .. } | ExprKind::List(_) | ExprKind::Bad => {
+                Text::operand("FALSE".into(), Ty::Unknown)
+            }
         }
     }
 

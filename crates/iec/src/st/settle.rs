@@ -172,6 +172,7 @@ impl Settler<'_> {
                 match target {
                     Target::Path(path) => self.path(path),
                     Target::Work(work) => self.work(work),
+                    Target::Element(element) => self.expr(element),
                     Target::Direct(..) => {}
                 }
             }
@@ -279,6 +280,11 @@ impl Settler<'_> {
                 self.function(path);
                 self.args(args);
             }
+            ExprKind::Element(path, index, _) => {
+                self.path(path);
+                index.iter_mut().for_each(|e| self.expr(e));
+            }
+            ExprKind::List(values) => values.iter_mut().for_each(|(_, e)| self.expr(e)),
             ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
         }
     }

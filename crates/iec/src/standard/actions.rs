@@ -49,7 +49,8 @@ impl<'d> Lower<'d> {
                 _ => None,
             },
             Target::Direct(address, _) => self.scopes.at(address),
-            Target::Work(_) => None,
+            // `arrays` has put single variables in the place of elements.
+            Target::Element(_) | Target::Work(_) => None,
         }
     }
 

@@ -37,6 +37,10 @@ impl<'d> Lower<'d> {
     pub(super) fn expr(&mut self, e: &Expr, at: &At<'d>) -> Expr {
         let span = e.at.0;
         let kind = match &e.kind {
+            ExprKind::Element(..) | ExprKind::List(_) => {
+                self.lost(span, say!("an element of an array by an index that is not written as a number"));
+                return e.clone();
+            }
             ExprKind::Literal(_) | ExprKind::Bad => return e.clone(),
             ExprKind::Path(path) => return self.value(path, span, at),
             ExprKind::Direct(address) => return self.direct(address, span, at),

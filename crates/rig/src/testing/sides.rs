@@ -53,6 +53,14 @@ impl Needs {
                 }
                 args.iter().for_each(|a| self.look(bench, &a.value));
             }
+            ExprKind::Element(path, index, _) => {
+                // The plant knows the outputs as well.
+                if of_array(&bench.compiled.symbols, path).is_some_and(|c| c != VarClass::Output) {
+                    self.charts = self.charts.take().or(Some(path.text()));
+                }
+                index.iter().for_each(|e| self.look(bench, e));
+            }
+            ExprKind::List(values) => values.iter().for_each(|(_, e)| self.look(bench, e)),
             ExprKind::Literal(_) | ExprKind::Bad => {}
         }
     }
@@ -94,6 +102,12 @@ fn conjuncts(e: &Expr) -> Vec<&Expr> {
         ExprKind::Binary(BinaryOp::And | BinaryOp::Dot, a, b) => [conjuncts(a), conjuncts(b)].concat(),
         _ => vec![e],
     }
+}
+
+/// The role of the elements of an array.
+fn of_array(symbols: &Symbols, path: &Path) -> Option<VarClass> {
+    let first = format!("{}[", path.text());
+    symbols.variables.iter().find(|v| v.name.starts_with(&first)).map(|v| v.class)
 }
 
 fn class(symbols: &Symbols, name: &str) -> Option<VarClass> {

@@ -1,8 +1,8 @@
 //! Prepares the statements of a test for execution: names become items, expressions become asks.
 
 use g7_model::{
-    Expr, ExprKind, Literal, Name, Nanos, Path, Problem, Said, Scenario, Span, TestStmt, TestStmtKind, Type,
-    codes, say,
+    Expr, ExprKind, Literal, Name, Nanos, Problem, Said, Scenario, Span, TestStmt, TestStmtKind, Type, codes,
+    say,
 };
 
 use super::sides;
@@ -220,14 +220,12 @@ impl Planner<'_> {
     /// Adds an ask for each name in a condition, so that a failure can show its value.
     fn mention(&mut self, e: &Expr, ask: AskId, mentions: &mut Vec<(String, AskId)>) {
         let of_plant = self.asks.get(ask).is_some_and(|a| a.of_plant);
-        let mut paths: Vec<&Path> = Vec::new();
-        collect(e, &mut paths);
-        for path in paths {
-            let name = path.text();
+        let mut variables: Vec<&Expr> = Vec::new();
+        collect(e, &mut variables);
+        for expr in variables {
+            let Some(name) = expr.kind.variable() else { continue };
             if mentions.len() < MENTIONS && mentions.iter().all(|(n, _)| *n != name) {
-                let at = path.names.first().map(|n| n.at).unwrap_or_default();
-                let expr = Expr { kind: ExprKind::Path(path.clone()), at };
-                self.asks.push(Ask { expr, of_plant });
+                self.asks.push(Ask { expr: expr.clone(), of_plant });
                 mentions.push((name, self.asks.len() - 1));
             }
         }
@@ -237,16 +235,20 @@ impl Planner<'_> {
 /// The name that a statement sets, as it is written.
 fn written(target: &Expr) -> String {
     match &target.kind {
-        ExprKind::Path(path) => path.text(),
         ExprKind::Direct(text) => format!("%{text}"),
-        _ => String::new(),
+        kind => kind.variable().unwrap_or_default(),
     }
 }
 
-/// Collects every path of an expression, in the order of the text.
-fn collect<'e>(e: &'e Expr, to: &mut Vec<&'e Path>) {
+/// Collects every variable of an expression, in the order of the text.
+fn collect<'e>(e: &'e Expr, to: &mut Vec<&'e Expr>) {
     match &e.kind {
-        ExprKind::Path(path) => to.push(path),
+        ExprKind::Path(_) => to.push(e),
+        ExprKind::Element(_, index, _) => {
+            to.push(e);
+            index.iter().for_each(|e| collect(e, to));
+        }
+        ExprKind::List(values) => values.iter().for_each(|(_, e)| collect(e, to)),
         ExprKind::Unary(_, a) => collect(a, to),
         ExprKind::Binary(_, a, b) => {
             collect(a, to);

@@ -209,7 +209,7 @@ impl Parser<'_> {
         time
     }
 
-    fn expr_in_parens(&mut self) -> Expr {
+    pub(super) fn expr_in_parens(&mut self) -> Expr {
         let open = self.here();
         self.bump();
         let e = self.expr();
@@ -241,13 +241,17 @@ impl Parser<'_> {
             let kind = g7_model::StmtKind::Call(path, self.call_args());
             return Target::Work(Work::Single(Box::new(Stmt { kind, at: self.since(start).into() })));
         }
+        let kind = self.variable_of(path);
         let counted = matches!(self.cur.kind, Tok::Plus | Tok::Minus)
             && matches!(self.peek().kind, Tok::Eq | Tok::Plus | Tok::Minus);
-        if !counted && !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
-            return Target::Path(path);
-        }
         let at = self.since(start).into();
-        self.assigned(Expr { kind: ExprKind::Path(path), at }, start)
+        if counted || matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
+            return self.assigned(Expr { kind, at }, start);
+        }
+        match kind {
+            ExprKind::Path(path) => Target::Path(path),
+            kind => Target::Element(Box::new(Expr { kind, at })),
+        }
     }
 
     fn assigned(&mut self, target: Expr, start: u32) -> Target {

@@ -470,9 +470,42 @@ impl Parser<'_> {
         next.kind == Tok::LParen && !next.newline
     }
 
+    /// The index behind the name of an array, and the number of a bit behind that, if they stand here.
+    pub(super) fn variable_of(&mut self, path: Path) -> ExprKind {
+        self.element_of(path).0
+    }
+
+    /// The same with the height of the highest index.
+    fn element_of(&mut self, path: Path) -> (ExprKind, u32) {
+        let close = self.cur.start == self.prev.end;
+        if !self.at(Tok::LBracket) || !close || !self.enter() {
+            return (ExprKind::Path(path), 0);
+        }
+        let open = self.here();
+        self.bump();
+        let (mut index, mut height) = (Vec::new(), 0);
+        loop {
+            let tree = self.tree(1);
+            height = height.max(tree.height);
+            index.push(tree.expr);
+            if !self.eat(Tok::Comma) {
+                break;
+            }
+        }
+        self.close(Tok::RBracket, say!("`]`"), open);
+        self.leave();
+        let member = self.eat(Tok::PathDot).then(|| self.member());
+        (ExprKind::Element(path, index, member), height)
+    }
+
     fn path_or_call(&mut self) -> Tree {
         let start = self.cur.start;
         let path = self.path();
+        if self.at(Tok::LBracket) {
+            let (kind, height) = self.element_of(path);
+            let at = self.since(start);
+            return self.checked(kind, at, height + 1);
+        }
         if !self.at_call() {
             return self.leaf(ExprKind::Path(path), start);
         }
@@ -506,7 +539,8 @@ impl Parser<'_> {
             }
             let value = self.tree(1);
             height = height.max(value.height);
-            let is_path = matches!(value.expr.kind, ExprKind::Path(_) | ExprKind::Bad);
+            let is_path =
+                matches!(value.expr.kind, ExprKind::Path(_) | ExprKind::Element(..) | ExprKind::Bad);
             if output && !is_path {
                 let at = value.expr.at.0;
                 self.slip(

@@ -3,7 +3,8 @@
 use super::Parser;
 use crate::lexer::Tok;
 use g7_model::{
-    Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Rate, Said, StateVar, View, say, words,
+    Arrivals, Binding, Drive, Expr, Name, Parts, Path, Plant, PlantItem, Rate, Said, StateVar, View, say,
+    words,
 };
 
 impl Parser<'_> {
@@ -120,7 +121,11 @@ impl Parser<'_> {
 
     fn drive(&mut self) -> Drive {
         let start = self.bump().start;
-        let (input, value) = self.name_and_value(say!("the name of an input"));
+        let first = self.cur.start;
+        let path = Path { names: vec![self.name(say!("the name of an input"))] };
+        let kind = self.variable_of(path);
+        let input = Expr { kind, at: self.since(first).into() };
+        let value = if self.assign_sign() { self.expr() } else { self.bad() };
         Drive { input, value, at: self.since(start).into() }
     }
 

@@ -143,7 +143,8 @@ impl Parser<'_> {
             let token = self.bump();
             ExprKind::Direct(self.direct_name(token))
         } else {
-            ExprKind::Path(self.path_or_empty(what))
+            let path = self.path_or_empty(what);
+            self.variable_of(path)
         };
         Expr { kind, at: self.since(start).into() }
     }

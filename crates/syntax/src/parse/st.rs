@@ -406,8 +406,9 @@ impl Parser<'_> {
         if self.at_call() {
             return Some(StmtKind::Call(path, self.call_args()));
         }
+        let kind = self.variable_of(path);
         let at = self.since(start).into();
-        Some(self.assignment(Expr { kind: ExprKind::Path(path), at }))
+        Some(self.assignment(Expr { kind, at }))
     }
 
     /// The rest of `target := value`.
@@ -416,7 +417,7 @@ impl Parser<'_> {
             && matches!(self.peek().kind, Tok::Eq | Tok::Plus | Tok::Minus)
         {
             let sign = self.slice(self.cur);
-            let name = if let ExprKind::Path(p) = &target.kind { p.text() } else { "n".into() };
+            let name = self.text_at(target.at.0).to_owned();
             let help = say!("write `{name} := {name} {sign} 1`");
             self.expected_help(say!("`:=`"), Some(help));
             self.bump();

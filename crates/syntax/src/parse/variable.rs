@@ -2,9 +2,9 @@
 
 use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
-use crate::words;
+use crate::words::{self, St};
 use g7_iec::constant;
-use g7_model::{Expr, Name, Param, Problem, Said, Type, VarDecl, VarKind, codes, say};
+use g7_model::{Array, Expr, ExprKind, Name, Param, Problem, Said, Type, VarDecl, VarKind, codes, say};
 
 impl Parser<'_> {
     /// The kind of variable that is declared here, if one is.
@@ -22,13 +22,16 @@ impl Parser<'_> {
     pub(super) fn variable(&mut self, kind: VarKind) -> VarDecl {
         let start = self.bump().start;
         let names = self.names(say!("the name of a variable"));
-        let ty = self.typed();
+        let array = self.array();
+        let ty = if array.is_some() { self.ty() } else { self.typed() };
         let at = self.since(start).into();
+        let init = if array.is_some() { self.values() } else { self.initial_value() };
         let mut decl = VarDecl {
             kind,
             names,
+            array,
             ty,
-            init: self.initial_value(),
+            init,
             address: None,
             inverted: false,
             retain: false,
@@ -124,6 +127,68 @@ impl Parser<'_> {
         Type::Bool
     }
 
+    /// `: ARRAY[1..6, 0..3] OF`, if it stands here.
+    fn array(&mut self) -> Option<Box<Array>> {
+        let next = self.peek();
+        if !self.at(Tok::Colon) || !self.slice(next).eq_ignore_ascii_case("ARRAY") {
+            return None;
+        }
+        self.bump();
+        let start = self.bump().start;
+        let open = self.here();
+        let mut dimensions = Vec::new();
+        if self.expect(Tok::LBracket, say!("`[` and the least index")) {
+            loop {
+                let least = self.expr();
+                self.expect(Tok::DotDot, say!("`..` and the greatest index"));
+                dimensions.push((least, self.expr()));
+                if !self.eat(Tok::Comma) {
+                    break;
+                }
+            }
+            self.close(Tok::RBracket, say!("`]`"), open);
+        }
+        if !self.eat_st(St::Of) {
+            self.expected(say!("`OF` and the type of the elements"));
+        }
+        Some(Box::new(Array { dimensions, at: self.since(start).into() }))
+    }
+
+    /// `:= [1, 2, 4(0)]`, the values of an array.
+    fn values(&mut self) -> Option<Expr> {
+        if !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
+            return None;
+        }
+        self.assign_sign();
+        let open = self.here();
+        if !self.at(Tok::LBracket) {
+            let value = self.expr();
+            let at = value.at.0;
+            self.slip(at, say!("the values of an array stand in brackets"), say!("write `[1, 2, 4(0)]`"));
+            return Some(value);
+        }
+        self.bump();
+        let mut values = Vec::new();
+        loop {
+            values.push(self.repeated());
+            if !self.eat(Tok::Comma) {
+                break;
+            }
+        }
+        self.close(Tok::RBracket, say!("`]`"), open);
+        Some(Expr { kind: ExprKind::List(values), at: self.since(open.start).into() })
+    }
+
+    /// `4(0)`, or one value.
+    fn repeated(&mut self) -> (u32, Expr) {
+        let next = self.peek();
+        if !self.at(Tok::Int) || next.kind != Tok::LParen || next.newline {
+            return (1, self.expr());
+        }
+        let count = self.integer_if(u64::from(u32::MAX)).and_then(|n| u32::try_from(n).ok());
+        (count.unwrap_or(1), self.expr_in_parens())
+    }
+
     /// `:= expr`, if it stands here; `=` is taken for it.
     pub(super) fn initial_value(&mut self) -> Option<Expr> {
         if !matches!(self.cur.kind, Tok::Assign | Tok::Eq) {
@@ -203,7 +268,8 @@ impl Parser<'_> {
                 return meant(problem, other.name());
             }
             problem.help(match (&*upper, words::similar(word, &names)) {
-                ("ARRAY" | "STRUCT", _) => say!("declare one variable for each element"),
+                ("ARRAY", _) => say!("an array is declared in a chart or in the file"),
+                ("STRUCT", _) => say!("declare one variable for each element"),
                 ("DATE" | "TOD" | "DT" | "TIME_OF_DAY" | "DATE_AND_TIME" | "LTIME", _) => {
                     say!("the only type of times is TIME")
                 }

@@ -157,6 +157,7 @@ impl Printer<'_> {
     fn action_target(&mut self, target: &Target) {
         match target {
             Target::Path(path) => self.path(path),
+            Target::Element(element) => self.expr(element),
             Target::Direct(name, _) => {
                 self.push("%");
                 self.push(name);

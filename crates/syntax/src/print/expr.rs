@@ -56,6 +56,17 @@ impl<'a> Printer<'a> {
                 }
                 _ => self.call(path, args),
             },
+            ExprKind::Element(path, index, member) => {
+                self.path(path);
+                self.push("[");
+                self.list(index);
+                self.push("]");
+                if let Some(member) = member {
+                    self.push(".");
+                    self.name(&member.text);
+                }
+            }
+            ExprKind::List(values) => self.values(values),
             ExprKind::Bad => self.push("?"),
         }
     }
@@ -89,7 +100,10 @@ impl<'a> Printer<'a> {
         if is_time(t1) && t2.is_none_or(is_time) {
             self.bare(t1);
             self.push("/");
-            let plain = matches!(&e.kind, ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Call(..));
+            let plain = matches!(
+                &e.kind,
+                ExprKind::Path(_) | ExprKind::Element(..) | ExprKind::Direct(_) | ExprKind::Call(..)
+            );
             if plain {
                 self.bare(e);
             } else {
@@ -107,6 +121,22 @@ impl<'a> Printer<'a> {
             self.expr(part);
         }
         self.push(")");
+    }
+
+    /// `[1, 2, 4(0)]`.
+    fn values(&mut self, values: &[(u32, Expr)]) {
+        self.push("[");
+        for (i, (count, value)) in values.iter().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            if *count == 1 {
+                self.expr(value);
+            } else {
+                self.push(&format!("{count}("));
+                self.expr(value);
+                self.push(")");
+            }
+        }
+        self.push("]");
     }
 
     pub(super) fn path(&mut self, path: &Path) {
@@ -191,6 +221,8 @@ fn is_simple(e: &Expr) -> bool {
         | ExprKind::Path(_)
         | ExprKind::Direct(_)
         | ExprKind::Call(..)
+        | ExprKind::Element(..)
+        | ExprKind::List(_)
         | ExprKind::Bad => true,
         ExprKind::Unary(..) | ExprKind::Binary(..) | ExprKind::Timer { .. } => false,
     }

@@ -4,8 +4,8 @@ use super::{Printer, is_plain};
 use crate::parse::SWITCHES;
 use g7_iec::constant;
 use g7_model::{
-    Document, Function, Item, Name, NamedAction, Param, Profile, Section, Span, StmtKind, Switch, VarDecl,
-    VarKind,
+    Array, Document, Function, Item, Name, NamedAction, Param, Profile, Section, Span, StmtKind, Switch,
+    VarDecl, VarKind,
 };
 
 impl Printer<'_> {
@@ -81,7 +81,11 @@ impl Printer<'_> {
             VarKind::Const => "const ",
         });
         self.names(&v.names);
-        self.push(&format!(" : {}", v.ty));
+        self.push(" : ");
+        if let Some(array) = &v.array {
+            self.array(array);
+        }
+        self.push(&v.ty.to_string());
         self.initial(v.init.as_ref());
         if let Some(address) = &v.address {
             self.push(" at ");
@@ -94,6 +98,17 @@ impl Printer<'_> {
             self.expr(safe);
         }
         self.comment(v.comment.as_deref());
+    }
+
+    /// `ARRAY[1..6, 0..3] OF `.
+    fn array(&mut self, array: &Array) {
+        for (i, (least, most)) in array.dimensions.iter().enumerate() {
+            self.push(if i == 0 { "ARRAY[" } else { ", " });
+            self.expr(least);
+            self.push("..");
+            self.expr(most);
+        }
+        self.push("] OF ");
     }
 
     fn address(&mut self, address: &Name) {

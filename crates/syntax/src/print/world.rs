@@ -85,7 +85,7 @@ impl Printer<'_> {
             }
             PlantItem::Drive(d) => {
                 self.push("drive ");
-                self.name(&d.input.text);
+                self.expr(&d.input);
                 self.initial(Some(&d.value));
             }
             PlantItem::Parts(parts) => self.parts(parts),
@@ -116,7 +116,7 @@ impl Printer<'_> {
         }
     }
 
-    fn list(&mut self, list: &[Expr]) {
+    pub(super) fn list(&mut self, list: &[Expr]) {
         for (i, e) in list.iter().enumerate() {
             self.push(if i > 0 { ", " } else { "" });
             self.expr(e);

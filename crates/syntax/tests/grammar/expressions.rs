@@ -26,6 +26,15 @@ pub(crate) fn tree(e: &Expr) -> String {
             let args: String = args.iter().map(arg).collect();
             format!("(call {}{args})", p.text())
         }
+        ExprKind::Element(p, index, bit) => {
+            let index: String = index.iter().map(|e| format!(" {}", tree(e))).collect();
+            let bit = bit.as_ref().map(|b| format!(" .{}", b.text)).unwrap_or_default();
+            format!("(element {}{index}{bit})", p.text())
+        }
+        ExprKind::List(values) => {
+            let values: String = values.iter().map(|(n, e)| format!(" {n}*{}", tree(e))).collect();
+            format!("(list{values})")
+        }
         ExprKind::Bad => "bad".into(),
     }
 }

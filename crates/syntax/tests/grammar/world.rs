@@ -108,7 +108,7 @@ fn plants() {
     assert_eq!(s.limits.as_ref().map(|(a, b)| (tree(a), tree(b))), Some(("r0.0".into(), "r100.0".into())));
     let PlantItem::Rate(r) = &p.items[2] else { panic!("{p:?}") };
     assert_eq!((tree(&r.value), r.when.as_ref().map(tree)), ("r8.0".into(), Some("V1".into())));
-    assert!(matches!(&p.items[4], PlantItem::Drive(d) if &*d.input.text == "b1"));
+    assert!(matches!(&p.items[4], PlantItem::Drive(d) if d.input.kind.variable().as_deref() == Some("b1")));
     assert!(
         matches!(&p.items[5], PlantItem::On(e, b, _) if tree(e) == "(rise a)" && b.statements.len() == 1)
     );

@@ -1,9 +1,9 @@
 //! Random documents.
 
-use crate::expressions::{block, direct, duration, expr, name, path, simple_stmt, text, ty};
+use crate::expressions::{block, direct, duration, element, expr, name, path, simple_stmt, text, ty, values};
 use crate::world;
 use g7_model::{
-    Action, ActionKind, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
+    Action, ActionKind, Array, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
     Function, Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile, ProfileName, Qualifier,
     Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, Transition, VarDecl,
     VarKind, Work,
@@ -44,10 +44,16 @@ fn variable() -> impl Strategy<Value = VarDecl> {
         text().prop_map(|t| Name::new(t, Span::default())),
     ];
     let rest = (prop::option::of(address), any::<bool>(), prop::option::of(expr()), comment());
-    (kind, names(1..4), ty(), prop::option::of(expr()), expr(), rest).prop_map(
-        |(kind, names, ty, init, value, (address, flag, safe, comment))| VarDecl {
+    let scalar = (Just(None), prop::option::of(expr()), expr());
+    let dimensions = prop::collection::vec((expr(), expr()), 1..3);
+    let array = dimensions.prop_map(|dimensions| Some(Box::new(Array { dimensions, at: at() })));
+    let array = (array, prop::option::of(values()), values());
+    let shape = prop_oneof![3 => scalar.boxed(), 1 => array.boxed()];
+    (kind, names(1..4), ty(), shape, rest).prop_map(
+        |(kind, names, ty, (array, init, value), (address, flag, safe, comment))| VarDecl {
             kind,
             names,
+            array,
             ty,
             init: if kind == VarKind::Const { Some(value) } else { init },
             address: address.filter(|_| kind != VarKind::Const),
@@ -97,6 +103,7 @@ fn action() -> impl Strategy<Value = Action> {
     let target = prop_oneof![
         2 => path().prop_map(Target::Path),
         1 => direct().prop_map(|d| Target::Direct(d, at())),
+        1 => element(expr()).prop_map(|e| Target::Element(Box::new(e))),
         2 => work().prop_map(Target::Work),
     ];
     let qualified = (prop::sample::select(Qualifier::ALL.to_vec()), expr(), target, prop::option::of(expr()))

@@ -163,9 +163,23 @@ pub(crate) fn expr() -> impl Strategy<Value = Expr> {
                 .prop_map(|(op, a, b)| of(ExprKind::Binary(op, a, b))),
             2 => (t.clone(), boxed, prop::option::of(t))
                 .prop_map(|(t1, e, t2)| of(ExprKind::Timer { t1, e, t2 })),
-            1 => (path(), args(inner)).prop_map(|(p, a)| of(ExprKind::Call(p, a))),
+            1 => (path(), args(inner.clone())).prop_map(|(p, a)| of(ExprKind::Call(p, a))),
+            1 => element(inner),
         ]
     })
+}
+
+/// An element of an array, or a bit of one.
+pub(crate) fn element(index: impl Strategy<Value = Expr>) -> impl Strategy<Value = Expr> {
+    let bit = prop::option::of(0..64_u8).prop_map(|n| n.map(|n| Name::new(n.to_string(), Span::default())));
+    (path(), prop::collection::vec(index, 1..3), bit)
+        .prop_map(|(p, index, bit)| of(ExprKind::Element(p, index, bit)))
+}
+
+/// The values of an array.
+pub(crate) fn values() -> impl Strategy<Value = Expr> {
+    let one = (prop_oneof![3 => Just(1_u32), 1 => 0..9_u32], expr());
+    prop::collection::vec(one, 1..4).prop_map(|list| of(ExprKind::List(list)))
 }
 
 fn args(value: impl Strategy<Value = Expr>) -> impl Strategy<Value = Vec<Arg>> {
@@ -185,6 +199,7 @@ pub(crate) fn target() -> impl Strategy<Value = Expr> {
     prop_oneof![
         3 => path().prop_map(|p| of(ExprKind::Path(p))),
         1 => direct().prop_map(|d| of(ExprKind::Direct(d))),
+        1 => element(expr()),
     ]
 }
 

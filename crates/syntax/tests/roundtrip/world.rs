@@ -3,8 +3,8 @@
 use crate::charts::{at, comment, param};
 use crate::expressions::{block, duration, expr, name, target, text, ty};
 use g7_model::{
-    Arrivals, Binding, Drive, Layout, Parts, PlaceAt, Placed, Plant, PlantItem, Property, PropertyKind, Rate,
-    Scenario, StateVar, TestStmt, TestStmtKind, View,
+    Arrivals, Binding, Drive, Expr, ExprKind, Layout, Parts, Path, PlaceAt, Placed, Plant, PlantItem,
+    Property, PropertyKind, Rate, Scenario, StateVar, TestStmt, TestStmtKind, View,
 };
 use proptest::prelude::*;
 
@@ -42,7 +42,10 @@ fn plant_item() -> impl Strategy<Value = PlantItem> {
             when,
             at: at()
         })),
-        (name(), expr()).prop_map(|(input, value)| PlantItem::Drive(Drive { input, value, at: at() })),
+        (name(), expr()).prop_map(|(input, value)| {
+            let kind = ExprKind::Path(Path { names: vec![input] });
+            PlantItem::Drive(Drive { input: Expr { kind, at: at() }, value, at: at() })
+        }),
         (expr(), block()).prop_map(|(e, b)| PlantItem::On(e, b, at())),
         block().prop_map(|b| PlantItem::Each(b, at())),
         parts,

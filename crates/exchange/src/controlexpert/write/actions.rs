@@ -128,6 +128,10 @@ impl Writer<'_> {
                     None
                 }
             },
+            Target::Element(element) => {
+                self.speech.cannot(element.at, say!("an element of an array"));
+                None
+            }
             Target::Work(_) => None,
         }
     }
@@ -159,6 +163,8 @@ impl Writer<'_> {
             ExprKind::Unary(UnaryOp::Not | UnaryOp::Neg, inner) => self.is_steady(chart, inner),
             ExprKind::Binary(_, a, b) => self.is_steady(chart, a) && self.is_steady(chart, b),
             ExprKind::Unary(..)
+            | ExprKind::Element(..)
+            | ExprKind::List(_)
             | ExprKind::Direct(_)
             | ExprKind::Timer { .. }
             | ExprKind::Call(..)

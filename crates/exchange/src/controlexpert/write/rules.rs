@@ -110,7 +110,7 @@ impl Writer<'_> {
                     Target::Path(path) => {
                         matches!(self.speech.scopes.refer(Some(index), &path.names), Some(Ref::Action(..)))
                     }
-                    Target::Direct(..) => false,
+                    Target::Direct(..) | Target::Element(_) => false,
                 };
                 list.extend(body.then_some(*qualifier));
             }
@@ -282,6 +282,11 @@ impl<'d> Visitor<'d> for Times {
                 self.expr(b);
             }
             ExprKind::Call(path, args) => self.call(path, args),
+            ExprKind::Element(path, index, _) => {
+                self.path(&path.names);
+                self.exprs(index);
+            }
+            ExprKind::List(values) => self.exprs(values.iter().map(|(_, e)| e)),
         }
     }
 }

@@ -104,6 +104,10 @@ impl<'d> Speech<'d> {
                 e.clone()
             }
             ExprKind::Literal(_) => e.clone(),
+            ExprKind::Element(..) | ExprKind::List(_) => {
+                self.cannot(e.at, say!("an element of an array"));
+                e.clone()
+            }
             ExprKind::Path(path) => self.path(path, home, at, depth),
             ExprKind::Direct(text) => self.direct(text, at),
             ExprKind::Unary(op @ (UnaryOp::Rise | UnaryOp::Fall), inner) => self.edge(*op, inner, home, at),

@@ -161,7 +161,7 @@ impl Writer<'_> {
         let meaning = match target {
             Target::Path(path) => self.look.path(chart, path),
             Target::Direct(address, _) => self.look.direct(address),
-            Target::Work(_) => None,
+            Target::Element(_) | Target::Work(_) => None,
         };
         let found = match meaning {
             Some(Meaning::Var(var)) => self.look.decl(var).map(|d| (var, d)),

@@ -71,6 +71,7 @@ impl Speech<'_, '_> {
                 }
                 self.call(&path.text().to_uppercase(), &values, e.at, wanted)
             }
+            ExprKind::Element(..) | ExprKind::List(_) => no(say!("an element of an array")),
             ExprKind::Bad => no(say!("what could not be read")),
         }
     }
@@ -234,7 +235,10 @@ impl Speech<'_, '_> {
             ExprKind::Literal(Literal::Int(..)) => Some(Sort::Int),
             ExprKind::Literal(Literal::Real(..)) => Some(Sort::Real),
             ExprKind::Literal(Literal::Str(_)) => Some(Sort::Text),
-            ExprKind::Literal(Literal::Time(_)) | ExprKind::Bad => None,
+            ExprKind::Literal(Literal::Time(_))
+            | ExprKind::Element(..)
+            | ExprKind::List(_)
+            | ExprKind::Bad => None,
             ExprKind::Path(path) => self.look.path(self.chart, path).and_then(|m| self.sort_of(m)),
             ExprKind::Direct(address) => self.look.direct(address).and_then(|m| self.sort_of(m)),
             ExprKind::Unary(UnaryOp::Neg, e) => self.sort(e).or(Some(Sort::Int)),

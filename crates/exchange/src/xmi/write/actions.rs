@@ -95,6 +95,7 @@ impl<'d> Writer<'d> {
                 return Some(element);
             }
             Target::Path(path) => Expr { kind: ExprKind::Path(path.clone()), at },
+            Target::Element(element) => (**element).clone(),
             Target::Direct(address, at) => Expr { kind: ExprKind::Direct(address.clone()), at: *at },
         };
         match qualifier {

@@ -95,6 +95,10 @@ impl Writer<'_> {
                     None
                 }
             },
+            ExprKind::Element(..) | ExprKind::List(_) => {
+                self.cannot(e.at, say!("an element of an array"));
+                None
+            }
             ExprKind::Direct(address) => match self.look.direct(address) {
                 Some(meaning) => self.meaning(e, &meaning, tag, place, depth),
                 None => {

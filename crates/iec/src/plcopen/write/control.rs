@@ -127,6 +127,8 @@ impl Control<'_> {
                         });
                         list.push(drive);
                     }
+                    // `arrays` has put single variables in their place.
+                    Target::Element(_) => {}
                     Target::Work(work) => bodies.push(Work {
                         name: format!("{}_{}", step.name.text, number + 1),
                         list: work.statements().to_vec(),
@@ -159,7 +161,7 @@ impl Control<'_> {
             step.actions.retain(|a| match drive_target(a) {
                 Some(Target::Path(path)) => own.contains(&key(&path.text())),
                 Some(Target::Direct(address, _)) => own.contains(&key(&format!("%{address}"))),
-                Some(Target::Work(_)) => false,
+                Some(Target::Element(_) | Target::Work(_)) => false,
                 None => true,
             });
             step.braces = !step.actions.is_empty();

@@ -297,6 +297,7 @@ impl Sfc<'_> {
         let what = match target {
             Target::Path(path) => Element::new("reference").with("name", path.text()),
             Target::Direct(address, _) => Element::new("reference").with("name", format!("%{address}")),
+            Target::Element(element) => Element::new("reference").with("name", self.writer.plain(element)),
             Target::Work(work) => self.inline(work),
         };
         let place = Element::new("relPosition").with("x", 0).with("y", 0);

@@ -81,6 +81,7 @@ impl<'d> Exporter<'d> {
                 let name = match target {
                     Target::Path(path) => path.text(),
                     Target::Direct(name, _) => format!("%{name}"),
+                    Target::Element(element) => writer.plain(element),
                     Target::Work(work) => self.anonymous(step, number, work, writer, bodies),
                 };
                 lines.push_str(&association(&name, *qualifier, time.as_deref()));

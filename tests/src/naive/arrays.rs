@@ -1,0 +1,126 @@
+//! Arrays: an element is the variable whose name has the indexes behind it, as in `a[1,2]`.
+
+use g7_model::{Expr, ExprKind, Name, Path, VarDecl, VarKind};
+
+use super::exec::Exec;
+use super::model::{FILE, Model, ScopeId};
+use super::resolve::Ref;
+use super::value::{NaiveFault, Run, bad};
+
+/// The path of the element with these indexes.
+pub(super) fn element(path: &Path, indexes: &[i128]) -> Path {
+    let mut names = path.names.clone();
+    if let Some(last) = names.last_mut() {
+        let indexes: Vec<String> = indexes.iter().map(i128::to_string).collect();
+        *last = Name::new(format!("{}[{}]", last.text, indexes.join(",")), last.at.0);
+    }
+    Path { names }
+}
+
+/// Each place of a list of values, with its value.
+fn values(init: Option<&Expr>) -> Vec<Expr> {
+    match init.map(|e| &e.kind) {
+        Some(ExprKind::List(list)) => {
+            list.iter().flat_map(|(n, e)| std::iter::repeat_n(e.clone(), *n as usize)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+impl Model {
+    /// The variables that a declaration stands for: one for each element, or the one itself.
+    pub(super) fn singles(&self, v: &VarDecl) -> Vec<VarDecl> {
+        let Some(array) = &v.array else { return vec![v.clone()] };
+        let mut all: Vec<Vec<i128>> = vec![Vec::new()];
+        for (least, most) in &array.dimensions {
+            let (least, most) = (self.bound(least), self.bound(most));
+            all =
+                all.iter().flat_map(|before| (least..=most).map(|n| [&before[..], &[n]].concat())).collect();
+        }
+        let given = values(v.init.as_ref());
+        let single = |(place, indexes): (usize, &Vec<i128>)| VarDecl {
+            names: v
+                .names
+                .iter()
+                .flat_map(|n| element(&Path { names: vec![n.clone()] }, indexes).names)
+                .collect(),
+            array: None,
+            init: given.get(place).cloned(),
+            ..v.clone()
+        };
+        all.iter().enumerate().map(single).collect()
+    }
+
+    fn bound(&self, e: &Expr) -> i128 {
+        let named = |path: &Path| {
+            let constants = self.vars.iter().filter(|v| v.kind == VarKind::Const);
+            let mut named = constants.filter(|v| v.qualified.rsplit('.').next() == Some(&path.text()));
+            named.next().and_then(|v| v.init.as_ref()?.kind.whole())
+        };
+        match &e.kind {
+            ExprKind::Path(path) => named(path),
+            kind => kind.whole(),
+        }
+        .expect("a bound")
+    }
+
+    /// The elements of an array, without the name before the indexes.
+    pub(super) fn array(&self, scope: ScopeId, path: &Path) -> Option<&[String]> {
+        let own = |s: ScopeId, name: &str| self.scopes[s].arrays.get(name).map(Vec::as_slice);
+        match &path.names[..] {
+            [name] => own(scope, &name.text).or_else(|| own(FILE, &name.text)),
+            [chart, name] => own(self.chart_named(&chart.text)?, &name.text),
+            _ => None,
+        }
+    }
+}
+
+impl Exec<'_> {
+    pub(super) fn indexes(&mut self, scope: ScopeId, index: &[Expr]) -> Run<Vec<i128>> {
+        index.iter().map(|e| self.eval(scope, e)?.whole()).collect()
+    }
+
+    /// An element, or a bit of one.
+    pub(super) fn element(
+        &mut self,
+        scope: ScopeId,
+        path: &Path,
+        indexes: &[i128],
+        bit: Option<&Name>,
+    ) -> Run<Ref> {
+        let mut path = element(path, indexes);
+        path.names.extend(bit.cloned());
+        self.m.resolve(scope, &path).ok_or(NaiveFault::Index)
+    }
+
+    /// `a := b` of whole arrays.
+    pub(super) fn copied(&mut self, scope: ScopeId, to: &Expr, from: &Expr) -> Option<Run<()>> {
+        let (ExprKind::Path(to), ExprKind::Path(from)) = (&to.kind, &from.kind) else { return None };
+        let elements = self.m.array(scope, to)?.to_vec();
+        let single = |path: &Path, indexes: &str| {
+            let mut names = path.names.clone();
+            if let Some(last) = names.last_mut() {
+                *last = Name::new(format!("{}{indexes}", last.text), last.at.0);
+            }
+            ExprKind::Path(Path { names })
+        };
+        for indexes in &elements {
+            let at = to.names.first().map(|n| n.at)?;
+            let value = match self.eval(scope, &Expr { kind: single(from, indexes), at }) {
+                Ok(value) => value,
+                Err(fault) => return Some(Err(fault)),
+            };
+            if let Err(fault) = self.assign(scope, &Expr { kind: single(to, indexes), at }, &value) {
+                return Some(Err(fault));
+            }
+        }
+        Some(Ok(()))
+    }
+
+    /// The element that an action drives; its indexes are written numbers or constants.
+    pub(super) fn known_element(m: &Model, scope: ScopeId, e: &Expr) -> Run<Ref> {
+        let ExprKind::Element(path, index, None) = &e.kind else { return bad("no element") };
+        let indexes: Vec<i128> = index.iter().map(|e| m.bound(e)).collect();
+        m.resolve(scope, &element(path, &indexes)).ok_or(NaiveFault::Index)
+    }
+}
