@@ -3,7 +3,7 @@
 use g7_model::{ProfileName, Type};
 
 use super::rng::Rng;
-use super::sight::{Sight, duration};
+use super::sight::{Sight, duration, is_chosen};
 
 /// The variables and blocks that statements may change.
 #[derive(Clone, Debug, Default)]
@@ -37,7 +37,7 @@ pub(super) fn assignment(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {
             if rng.percent(4) {
                 return format!("{name} := {name} + 1");
             }
-            if sight.bits && rng.percent(8) {
+            if sight.bits && rng.percent(8) && !is_chosen(&name) {
                 return format!("{name}.{} := {}", rng.below(3), sight.boolean(rng, 1));
             }
             format!("{name} := {}", sight.int(rng, ty, 1))
@@ -110,7 +110,8 @@ pub(super) fn statement(rng: &mut Rng, sight: &Sight, to: &mut Targets, depth: u
 }
 
 fn counter(rng: &mut Rng, to: &Targets) -> Option<(String, Type)> {
-    rng.pick(&to.ints).cloned()
+    let names: Vec<&(String, Type)> = to.ints.iter().filter(|(n, _)| !n.contains('[')).collect();
+    rng.pick(&names).copied().cloned()
 }
 
 fn loop_for(rng: &mut Rng, sight: &Sight, to: &Targets) -> String {

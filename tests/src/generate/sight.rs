@@ -31,6 +31,11 @@ pub(super) struct Sight {
     pub(super) bits: bool,
 }
 
+/// True if the name is an element of an array that the run chooses.
+pub(super) fn is_chosen(name: &str) -> bool {
+    name.contains(" mod ")
+}
+
 /// A duration that scans of a few milliseconds can observe.
 pub(super) fn duration(rng: &mut Rng) -> String {
     rng.one(["0s", "5ms", "10ms", "20ms", "25ms", "30ms", "50ms", "100ms"]).to_owned()
@@ -128,7 +133,8 @@ impl Sight {
 
     /// A bit of a variable that is a whole number; members of blocks have no bits.
     fn bit(&self, rng: &mut Rng) -> String {
-        let variables: Vec<&(String, Type)> = self.ints.iter().filter(|(n, _)| !n.ends_with(".CV")).collect();
+        let variables: Vec<&(String, Type)> =
+            self.ints.iter().filter(|(n, _)| !n.ends_with(".CV") && !is_chosen(n)).collect();
         let Some((name, ty)) = rng.pick(&variables).copied().cloned() else { return "TRUE".to_owned() };
         let bits = ty.elementary().map_or(8, |row| usize::from(row.bits));
         // The lowest ones change most.

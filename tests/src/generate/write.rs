@@ -194,6 +194,42 @@ fn variables(rng: &mut Rng, world: &mut World, out: &mut String) {
             s.ints.push((format!("f{i}.CV"), Type::Int));
         }
     }
+    arrays(rng, world, out);
+}
+
+/// Arrays, with elements that are known and elements that the run chooses. They are drawn from a copy: charts
+/// without arrays do not depend on it.
+fn arrays(rng: &Rng, world: &mut World, out: &mut String) {
+    let mut rng = rng.clone();
+    rng.bits();
+    if !rng.percent(30) {
+        return;
+    }
+    let (s, t) = (&mut world.sight, &mut world.targets);
+    // Within the bounds of two indexes, whatever its sign.
+    let index = format!("{} mod 2", t.ints.first().map_or("1", |(name, _)| name));
+    let ty = rng.one([Type::Int, Type::Int, Type::Dint, Type::Usint]);
+    let tail = if rng.percent(20) { " retain" } else { "" };
+    out.push_str(&format!("var v : ARRAY[1..4] OF {ty} := [{}, 2(3)]{tail}\n", rng.below(5)));
+    let mut ints = vec![format!("v[{index} + 2]"), format!("v[{}]", rng.between(1, 4))];
+    if ty == Type::Int && rng.percent(50) {
+        out.push_str("var z : ARRAY[0..1, -1..1] OF INT := [1, 2, 3, 4]\n");
+        ints.push(format!("z[{}, {index}]", rng.below(2)));
+        ints.push(format!("z[ABS({index}), 1]"));
+        ints.push("z[1, -1]".to_owned());
+    }
+    for name in ints {
+        s.ints.push((name.clone(), ty));
+        t.ints.push((name, ty));
+    }
+    if rng.percent(50) {
+        let word = rng.one(["var", "output"]);
+        out.push_str(&format!("{word} y : ARRAY[0..2] OF BOOL\n"));
+        for name in [format!("y[{index} + 1]"), "y[0]".to_owned(), "y[2]".to_owned()] {
+            s.bools.push(name.clone());
+            t.bools.push(name);
+        }
+    }
 }
 
 /// The outputs of qualified actions, separated into the classes that each profile distinguishes.

@@ -211,7 +211,7 @@ impl<'d> Resolver<'_, 'd> {
         };
         if index.len() != array.dimensions.len() {
             let (has, given) = (array.dimensions.len(), index.len());
-            let what = say!("`{}` has {has} dimensions, and {given} indexes stand here", array.name);
+            let what = say!("the number of indexes of `{}` is {has}; {given} stand here", array.name);
             return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
         }
         let mut all = Vec::new();

@@ -109,7 +109,7 @@ impl Resolver<'_, '_> {
     /// `Q => done`: a variable of the same type.
     fn output_target(&mut self, arg: &Arg, ty: Type) -> Option<Target> {
         let (target, of) = match &arg.value.kind {
-            Form::Path(_) | Form::Direct(_) => self.target(&arg.value)?,
+            Form::Path(_) | Form::Element(..) | Form::Direct(_) => self.target(&arg.value)?,
             _ => {
                 let what = say!("an output needs a variable to go to");
                 return self.report(Problem::new(&codes::WRONG_ARGUMENTS, arg.value.at.0, what));

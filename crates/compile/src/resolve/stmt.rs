@@ -118,6 +118,9 @@ impl Resolver<'_, '_> {
             let value = self.value(value, Type::Bool)?;
             return self.assign_bit(v, bit, value, target.at.0);
         }
+        if matches!(target.kind, Form::Element(_, _, Some(_))) {
+            return self.infer(value, None).and(None);
+        }
         match self.target(target) {
             Some((target, ty)) => Some(StmtKind::Assign(target, self.value(value, ty)?)),
             None => {
@@ -325,6 +328,10 @@ impl Resolver<'_, '_> {
             },
             Form::Direct(text) => self.refer_direct(text, at)?,
             Form::Element(path, index, None) => return self.element_target(path, index, at),
+            Form::Element(..) => {
+                let what = say!("a bit cannot be written here");
+                return self.report(Problem::new(&codes::NOT_WRITABLE, at, what));
+            }
             Form::Bad => return None,
             _ => {
                 let what = say!("only a variable can be assigned");
