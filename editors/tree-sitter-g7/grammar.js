@@ -104,9 +104,12 @@ module.exports = grammar({
       ),
     _clause: ($) => choice($.address, kw("inverted"), kw("retain"), seq(kw("safe"), $._expression), $.comment),
     address: ($) => seq(kw("at"), choice($.direct, $._name, $.string)),
+    // `ARRAY[1..6, 0..3] OF`
+    array: ($) => seq(iec("array"), "[", commas(seq($._expression, "..", $._expression)), "]", iec("of")),
     type: ($) =>
       prec.right(
         seq(
+          optional($.array),
           alias(choice(...words.types, ...words.types.map((t) => t.toLowerCase()), $.identifier), $.type_name),
           optional(
             choice(seq(alias($._call_open, "("), $.number, ")"), seq("[", $.number, "]")),
@@ -163,7 +166,7 @@ module.exports = grammar({
         seq(
           field("qualifier", $.qualifier),
           optional(field("time", choice($.duration, seq("(", $._expression, ")")))),
-          choice($.path, $.direct, $.assignment, $.call, $.block),
+          choice($.path, $.element, $.direct, $.assignment, $.call, $.block),
           optional($.condition),
         ),
       ),
@@ -218,7 +221,7 @@ module.exports = grammar({
         $.exit_statement,
         $.return_statement,
       ),
-    assignment: ($) => prec.right(seq(field("target", choice($.path, $.direct)), ":=", field("value", $._expression))),
+    assignment: ($) => prec.right(seq(field("target", choice($.path, $.element, $.direct)), ":=", field("value", $._expression))),
     if_statement: ($) =>
       seq(
         iec("if"),
@@ -285,7 +288,8 @@ module.exports = grammar({
       ),
     rate: ($) =>
       seq(kw("rate"), field("name", $._name), ":=", $._expression, optional(seq(kw("when"), $._expression))),
-    drive: ($) => seq(kw("drive"), field("name", $._name), ":=", $._expression),
+    drive: ($) =>
+      seq(kw("drive"), field("name", choice($._name, $.element)), ":=", $._expression),
     plant_event: ($) => seq(kw("on"), $._expression, $.block),
     tick: ($) => seq(kw("each"), $.block),
     parts: ($) =>
@@ -339,7 +343,7 @@ module.exports = grammar({
         $.test_repeat,
         $.comment,
       ),
-    _settable: ($) => choice($.path, $.direct),
+    _settable: ($) => choice($.path, $.element, $.direct),
     set: ($) => seq(kw("set"), commas(seq($._settable, ":=", $._expression))),
     pulse: ($) => seq(kw("pulse"), $._settable, optional(seq(iec("for"), $.duration))),
     wait: ($) =>
@@ -401,6 +405,7 @@ module.exports = grammar({
         $.string,
         $.boolean,
         $.path,
+        $.element,
         $.direct,
         $.call,
         $.group,
@@ -413,7 +418,10 @@ module.exports = grammar({
         $.binary,
       ),
     boolean: () => choice("TRUE", "FALSE", kw("true"), kw("false")),
-    group: ($) => choice(seq("(", $._expression, ")"), seq("[", $._expression, "]")),
+    // Brackets hold one expression, or the values of an array.
+    group: ($) =>
+      choice(seq("(", $._expression, ")"), seq("[", commas(choice($._expression, $.repeated)), "]")),
+    repeated: ($) => seq($.number, alias($._call_open, "("), $._expression, ")"),
     always_true: () => seq("=", "1"),
     edge: ($) => seq(choice(kw("rise"), kw("fall")), "(", $._expression, ")"),
     delay: ($) =>
@@ -429,6 +437,9 @@ module.exports = grammar({
         ),
       ),
     call: ($) => prec(12, seq(field("function", $.path), $.arguments)),
+    // The bracket stands close behind the name of the array.
+    element: ($) =>
+      prec(12, seq(field("array", $.path), token.immediate("["), commas($._expression), "]", optional($.member))),
     arguments: ($) => seq(alias($._call_open, "("), optional(commas($.argument)), optional(","), ")"),
     argument: ($) =>
       seq(optional(seq(field("name", $._name), choice(":=", "=>"))), $._expression),

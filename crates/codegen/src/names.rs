@@ -187,10 +187,18 @@ fn side(text: &str) -> String {
     }
 }
 
-/// Letters, digits and single underscores; not a digit first.
+/// Letters, digits and single underscores; not a digit first. An index below 0 has an `m` before it: `m_0_m1` is
+/// the element `m[0,-1]`.
 pub(crate) fn letters(name: &str) -> String {
     let mut out = String::new();
+    let mut before = ' ';
     for c in name.chars() {
+        let below = c == '-' && matches!(before, '[' | ',');
+        before = c;
+        if below {
+            out.push('m');
+            continue;
+        }
         let fine = c.is_ascii_alphanumeric();
         if out.is_empty() && (c.is_ascii_digit() || !fine) {
             out.push('n');

@@ -149,7 +149,9 @@ fn comparison(c: Cmp) -> Bin {
 
 /// A comparison of two numbers; known where compilers would warn that it is.
 pub(crate) fn compare(c: Cmp, n: Num, x: Expr, y: Expr) -> Expr {
-    if x == y && !is_real(n) && !matches!(x, Expr::Call(..)) {
+    // NaN is neither greater nor less than itself, and not equal to itself.
+    let strict = matches!(c, Cmp::Lt | Cmp::Gt);
+    if x == y && (strict || !is_real(n)) && !matches!(x, Expr::Call(..)) {
         return Expr::Bool(matches!(c, Cmp::Eq | Cmp::Le | Cmp::Ge));
     }
     if let (Expr::Int(a, _), Expr::Int(b, _)) = (&x, &y) {

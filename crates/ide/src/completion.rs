@@ -336,7 +336,13 @@ fn types() -> Vec<Choice> {
     let often = [Type::Bool, Type::Int, Type::Real, Type::Time].map(Type::name);
     let does = |name: &str| Type::named(name).map_or("", |ty| words::of_type(ty)[0]);
     let others = Type::names().filter(|name| !often.contains(name));
-    often.into_iter().chain(others).map(|t| choice(t, "type", Said::foreign(does(t)), t)).collect()
+    let named = often.into_iter().chain(others).map(|t| choice(t, "type", Said::foreign(does(t)), t));
+    let composed = words::TYPE.iter().map(|word| {
+        let text = word.text.to_ascii_uppercase();
+        let phrase = format!("{text}{}", word.then);
+        choice(&text, "type", Said::foreign(word.does[0]), &phrase)
+    });
+    named.chain(composed).collect()
 }
 
 fn functions() -> Vec<Choice> {

@@ -104,7 +104,13 @@ pub fn read(tongue: Tongue, text: &str) -> Result<String, Said> {
 /// steps and of members of blocks.
 fn is_boolean(e: &Expr, symbols: Option<&Symbols>) -> bool {
     let text = print_expr(e);
-    let declared = symbols.and_then(|s| s.variables.iter().find(|v| v.name.as_ref() == text));
+    // Of an element that the run chooses, the first one tells the type.
+    let first = match &e.kind {
+        ExprKind::Element(path, ..) => Some(format!("{}[", path.text())),
+        _ => None,
+    };
+    let named = |name: &str| name == text || first.as_deref().is_some_and(|first| name.starts_with(first));
+    let declared = symbols.and_then(|s| s.variables.iter().find(|v| named(&v.name)));
     match declared {
         Some(v) => v.ty == Type::Bool,
         None => !matches!(text.rsplit('.').next(), Some("t" | "s" | "ET" | "CV" | "PT" | "PV")),

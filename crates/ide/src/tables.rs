@@ -97,7 +97,7 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
             Meaning::Variable(v, chart) => variables.push(Variable {
                 name: n.name.text.to_string(),
                 class: v.kind,
-                ty: v.ty.to_string(),
+                ty: type_of(v),
                 init: v.init.as_ref().map_or(String::new(), |e| readable.words(e.at.0)),
                 address: v.address.as_ref().map_or(String::new(), |a| a.text.to_string()),
                 inverted: v.inverted,
@@ -122,9 +122,20 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
     Tables { stale: readable.stale, variables, steps }
 }
 
+/// The type of a declaration, with the bounds of an array.
+fn type_of(v: &VarDecl) -> String {
+    let Some(array) = &v.array else { return v.ty.to_string() };
+    let bounds: Vec<String> = array
+        .dimensions
+        .iter()
+        .map(|(least, most)| format!("{}..{}", g7_syntax::print_expr(least), g7_syntax::print_expr(most)))
+        .collect();
+    format!("ARRAY[{}] OF {}", bounds.join(", "), v.ty)
+}
+
 /// A declaration on one line, as it would stand in the text.
 pub fn declaration(name: &str, v: &VarDecl) -> String {
-    let mut line = format!("{} {name} : {}", class(v.kind), v.ty);
+    let mut line = format!("{} {name} : {}", class(v.kind), type_of(v));
     if v.init.is_some() && v.ty != Type::Bool {
         line.push_str(" := …");
     }

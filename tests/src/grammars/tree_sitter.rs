@@ -1,5 +1,6 @@
 //! The words that the grammar of tree-sitter requires, and the query that colours its trees.
 
+use g7_model::Type;
 use serde_json::json;
 
 use super::Vocabulary;
@@ -9,7 +10,8 @@ pub(super) fn words(words: &Vocabulary) -> String {
     let value = json!({
         "keywords": words.keywords,
         "qualifiers": words.qualifiers,
-        "types": words.types,
+        // The grammar has a rule for the words of `words::TYPE`.
+        "types": words.types.iter().filter(|w| Type::named(w).is_some()).collect::<Vec<_>>(),
         "profiles": words.profiles,
         "targets": words.targets,
         "switches": words.switches,

@@ -15,12 +15,12 @@ mod values;
 pub use begin::{ACTION, CHART, FILE, LAYOUT, PLANT, TEST};
 pub use go_on::{CLAUSES, STATEMENT};
 pub use row::{Told, Word};
-pub use values::{OPERATOR, PART, STEP, VALUE, of_qualifier, of_switch, of_type};
+pub use values::{OPERATOR, PART, STEP, TYPE, VALUE, of_qualifier, of_switch, of_type};
 
 use crate::{Language, ProfileName, Qualifier, StandardFunction, Type};
 
 /// The kinds of places, each with its words.
-pub const PLACES: [(&str, &[Word]); 12] = [
+pub const PLACES: [(&str, &[Word]); 13] = [
     ("file", FILE),
     ("chart", CHART),
     ("action", ACTION),
@@ -31,6 +31,7 @@ pub const PLACES: [(&str, &[Word]); 12] = [
     ("statement", STATEMENT),
     ("operator", OPERATOR),
     ("value", VALUE),
+    ("type", TYPE),
     ("step", STEP),
     ("part", PART),
 ];

@@ -37,6 +37,19 @@ pub const STEP: &[Word] = &[
     Word::free("T", ["time since activation", "temps depuis l’activation", "tempo desde a ativação"]),
 ];
 
+/// Words of a type, besides the names of types.
+pub const TYPE: &[Word] = &[Word {
+    text: "array",
+    then: "[1..2] OF ",
+    reserved: false,
+    capitals: true,
+    does: [
+        "elements of one type, each with its index",
+        "des éléments d’un même type, chacun avec son indice",
+        "elementos de um mesmo tipo, cada um com o seu índice",
+    ],
+}];
+
 /// Members of the parts of a plant.
 pub const PART: &[Word] = &[
     Word::free("count", ["how many parts", "le nombre de pièces", "quantas peças"]),
