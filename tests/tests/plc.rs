@@ -105,6 +105,14 @@ fn ironplc_checks_structured_text() {
         std::fs::write(&file, text).unwrap_or_else(|e| panic!("{e}"));
         ironplc.checks(&file)
     };
+    // IronPLC has SEL for numbers alone, though the standard has it for any type (IEC 61131-3:2003, 2.5.1.5.4).
+    let of_bits = |text: &str| {
+        let strings = ["BYTE#", "WORD#", "DWORD#", "LWORD#"];
+        text.lines().any(|l| l.contains("SEL(") && strings.iter().any(|s| l.contains(s)))
+    };
+    let all = list.len();
+    let list: Vec<_> = list.into_iter().filter(|(_, printed)| !of_bits(&printed.text)).collect();
+    println!("{} left out: SEL of bit strings", all - list.len());
     for part in list.chunks(40) {
         let text: String = part.iter().map(|(_, printed)| format!("{}\n", printed.text)).collect();
         if let Err(why) = checked(&text) {

@@ -360,8 +360,8 @@ pub enum ExprKind {
     Const(Value),
     /// The value of a variable.
     Var(VarId),
-    /// One of so many variables that follow each other from this one on, by an index from 0 (LINT).
-    Element(VarId, u32, Box<Expr>),
+    /// One of several variables, by an index from 0 (LINT) in each dimension.
+    Element(Elements, Vec<Expr>),
     /// Member of a function block instance, by its place in `FbKind::members`.
     Member(VarId, u8),
     /// Activity of a step; of a macro-step, `XM`.
@@ -425,8 +425,7 @@ impl Expr {
             | ExprKind::Section(_)
             | ExprKind::ScanTime
             | ExprKind::Random => ([None; 3], &[]),
-            ExprKind::Element(_, _, a)
-            | ExprKind::Not(a)
+            ExprKind::Not(a)
             | ExprKind::Neg(a)
             | ExprKind::Rise(a)
             | ExprKind::Fall(a)
@@ -434,7 +433,9 @@ impl Expr {
             | ExprKind::Trunc(a) => ([Some(a), None, None], &[]),
             ExprKind::Binary(_, a, b) => ([Some(a), Some(b), None], &[]),
             ExprKind::Timer { t1, e, t2 } => ([Some(t1), Some(e), t2.as_deref()], &[]),
-            ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => ([None; 3], args),
+            ExprKind::Element(_, args) | ExprKind::Builtin(_, args) | ExprKind::Call(_, args) => {
+                ([None; 3], args)
+            }
         };
         few.into_iter().flatten().chain(many)
     }
@@ -480,15 +481,31 @@ pub enum BinaryOp {
 pub enum Target {
     /// A variable.
     Var(VarId),
-    /// One of so many variables that follow each other from this one on, by an index from 0 (LINT).
-    Element(VarId, u32, Box<Expr>),
+    /// One of several variables, by an index from 0 (LINT) in each dimension.
+    Element(Elements, Vec<Expr>),
     /// An input member of an instance.
     Member(VarId, u8),
 }
 
-/// The variables of an [`ExprKind::Element`] or [`Target::Element`].
-pub fn elements(first: VarId, count: u32) -> impl Iterator<Item = VarId> {
-    (first.0..first.0 + count).map(VarId)
+/// The elements of an array: variables that follow one another, the last index counting fastest.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Elements {
+    /// The first one.
+    pub first: VarId,
+    /// The number of indexes of each dimension.
+    pub counts: Box<[u32]>,
+}
+
+impl Elements {
+    /// Their number.
+    pub fn count(&self) -> u32 {
+        self.counts.iter().product()
+    }
+
+    /// All of them.
+    pub fn iter(&self) -> impl Iterator<Item = VarId> + use<> {
+        (self.first.0..self.first.0 + self.count()).map(VarId)
+    }
 }
 
 /// A statement.

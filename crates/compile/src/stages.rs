@@ -104,7 +104,7 @@ fn properties<'d>(doc: &'d Document, unit: &mut ir::Unit, scopes: &mut resolve::
 /// True if an expression reads an input.
 fn reads_input(unit: &ir::Unit, e: &ir::Expr) -> bool {
     match &e.kind {
-        ir::ExprKind::Var(v) | ir::ExprKind::Element(v, _, _) => {
+        ir::ExprKind::Var(v) | ir::ExprKind::Element(ir::Elements { first: v, .. }, _) => {
             unit.vars.get(v.index()).is_some_and(|v| v.class == ir::VarClass::Input)
                 || e.operands().any(|e| reads_input(unit, e))
         }

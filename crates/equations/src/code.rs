@@ -447,6 +447,10 @@ impl Body<'_, '_> {
                     self.store(memory, None, value);
                 }
             }
+            StmtKind::Evaluate(tree::Expr { kind: ExprKind::Element { len, index, .. }, at }) => {
+                let index = self.expr(index);
+                self.within(index, *len, *at);
+            }
             StmtKind::Evaluate(e) => {
                 self.expr(e);
             }

@@ -7,7 +7,7 @@ use g7_model::Type;
 use super::tree::{statements, within, written};
 use crate::ir::{
     ActionKind, Chart, ChartId, ChartRole, Expr, ExprKind, Service, Situation, StepId, StmtKind, Unit,
-    VarClass, VarId, elements,
+    VarClass, VarId,
 };
 
 pub(super) struct Facts<'u> {
@@ -93,7 +93,7 @@ impl<'u> Facts<'u> {
     pub(super) fn steady(&self, e: &Expr) -> bool {
         let fine = match &e.kind {
             ExprKind::Var(v) | ExprKind::Member(v, _) => self.stays(*v),
-            ExprKind::Element(v, count, _) => elements(*v, *count).all(|v| self.stays(v)),
+            ExprKind::Element(all, _) => all.iter().all(|v| self.stays(v)),
             ExprKind::StepActive(_)
             | ExprKind::StepTime(_)
             | ExprKind::StepTenths(_)

@@ -6,7 +6,7 @@ use std::mem::{Discriminant, discriminant};
 use g7_engine::Builtin;
 use g7_model::Type;
 
-use crate::ir::{ActionKind, BinaryOp, Expr, ExprKind, Stmt, StmtKind, Target, Unit, Value, VarId, elements};
+use crate::ir::{ActionKind, BinaryOp, Expr, ExprKind, Stmt, StmtKind, Target, Unit, Value, VarId};
 
 /// Every statement that runs, also those inside others, in no special order.
 pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
@@ -56,11 +56,11 @@ pub(super) fn within<'u>(list: impl IntoIterator<Item = &'u Stmt>) -> Vec<&'u St
 /// The variables that a statement itself writes; for a function block the instance.
 pub(super) fn written(s: &Stmt) -> Vec<VarId> {
     let variables = |t: &Target| match t {
-        Target::Var(v) | Target::Member(v, _) => elements(*v, 1),
-        Target::Element(v, count, _) => elements(*v, *count),
+        Target::Var(v) | Target::Member(v, _) => vec![*v],
+        Target::Element(all, _) => all.iter().collect(),
     };
     match &s.kind {
-        StmtKind::Assign(target, _) => variables(target).collect(),
+        StmtKind::Assign(target, _) => variables(target),
         StmtKind::Fb { var, outputs, .. } => {
             std::iter::once(*var).chain(outputs.iter().flat_map(|(_, t)| variables(t))).collect()
         }
@@ -112,7 +112,8 @@ fn head(e: &Expr) -> Head<'_> {
         ExprKind::Binary(op, ..) => Head::Operator(*op),
         ExprKind::Builtin(f, _) => Head::Builtin(*f),
         ExprKind::Convert(_) | ExprKind::Trunc(_) => Head::To(form, e.ty),
-        ExprKind::Var(v) | ExprKind::Element(v, _, _) => Head::Of(form, v.0, 0),
+        ExprKind::Var(v) => Head::Of(form, v.0, 0),
+        ExprKind::Element(all, _) => Head::Of(form, all.first.0, 0),
         ExprKind::Member(v, m) => Head::Of(form, v.0, *m),
         ExprKind::StepActive(s)
         | ExprKind::StepTime(s)

@@ -70,10 +70,10 @@ impl Lower<'_> {
     fn target(&mut self, period: u32, target: &Target) -> To {
         match target {
             Target::Var(var) => To::Variable(*var),
-            Target::Element(var, count, index) => {
-                let index = self.expr(period, index);
-                let ty = self.unit.vars.get(var.index()).map_or(Type::Bool, |v| v.ty);
-                To::Number(ty, tree::Target::Element(self.words.addr(*var), *count, index))
+            Target::Element(all, index) => {
+                let index = self.element_place(period, all, index);
+                let ty = self.unit.vars.get(all.first.index()).map_or(Type::Bool, |v| v.ty);
+                To::Number(ty, tree::Target::Element(self.words.addr(all.first), all.count(), index))
             }
             Target::Member(var, member) => {
                 let ty = match self.unit.vars.get(var.index()).map(|v| v.ty) {

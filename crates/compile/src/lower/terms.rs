@@ -55,9 +55,9 @@ impl Lower<'_> {
         let kind = match &e.kind {
             ir::ExprKind::Const(value) => return self.constant(e.ty, value, at),
             ir::ExprKind::Var(var) => return self.load(*var, at),
-            ir::ExprKind::Element(var, count, index) => {
-                let index = self.boxed(period, index);
-                ExprKind::Element { ty: e.ty, base: self.words.addr(*var), len: *count, index }
+            ir::ExprKind::Element(all, index) => {
+                let index = Box::new(self.element_place(period, all, index));
+                ExprKind::Element { ty: e.ty, base: self.words.addr(all.first), len: all.count(), index }
             }
             ir::ExprKind::Member(var, member) => {
                 ExprKind::Word(e.ty, Addr(self.words.addr(*var).0 + u32::from(*member)))
@@ -96,6 +96,35 @@ impl Lower<'_> {
             ir::ExprKind::Random => ExprKind::Random(self.random.unwrap_or(Addr(0))),
         };
         Expr::new(kind, at)
+    }
+
+    /// The place of an element among all of them. In several dimensions each index is held to its own bounds, by
+    /// an element that is read for nothing: an index outside of them must not lead to another element.
+    pub(super) fn element_place(&mut self, period: u32, all: &ir::Elements, index: &[ir::Expr]) -> Expr {
+        let base = self.words.addr(all.first);
+        let ty = self.unit.vars.get(all.first.index()).map_or(Type::Bool, |v| v.ty);
+        let at = index.first().map_or(Span::default(), |e| e.at);
+        let (mut stride, mut sum, mut held) = (1, None, Vec::new());
+        for (e, count) in index.iter().zip(&*all.counts).rev() {
+            let one = self.expr(period, e);
+            if index.len() > 1 && !matches!(one.kind, ExprKind::Const(..)) {
+                let kind = ExprKind::Element { ty, base, len: *count, index: Box::new(one.clone()) };
+                held.push(Stmt { kind: tree::StmtKind::Evaluate(Expr::new(kind, e.at)), at: e.at });
+            }
+            let part = match (stride, &one.kind) {
+                (1, _) => one,
+                (_, ExprKind::Const(_, n)) => Expr::long(*n as i64 * stride, e.at),
+                _ => one.arith(Arith::Mul, Type::Lint, Expr::long(stride, e.at), e.at),
+            };
+            sum = Some(match sum {
+                Some(sum) => part.arith(Arith::Add, Type::Lint, sum, e.at),
+                None => part,
+            });
+            stride *= i64::from(*count);
+        }
+        let sum = sum.unwrap_or_else(|| Expr::long(0, at));
+        held.reverse();
+        if held.is_empty() { sum } else { Expr::new(ExprKind::After(held, Box::new(sum)), at) }
     }
 
     fn constant(&mut self, ty: Type, value: &Value, at: Span) -> Expr {

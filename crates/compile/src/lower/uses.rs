@@ -7,7 +7,6 @@
 
 use crate::ir::{
     ActionKind, ChartId, Expr, ExprKind, Service, StepId, Stmt, StmtKind, Target, Unit, Value, VarId,
-    elements,
 };
 use g7_model::Qualifier;
 
@@ -194,9 +193,9 @@ impl<'a> Walk<'a> {
             | ExprKind::Section(_) => {}
             ExprKind::Random => self.uses.random = true,
             ExprKind::Var(v) | ExprKind::Member(v, _) => self.read(*v),
-            ExprKind::Element(v, count, index) => {
-                elements(*v, *count).for_each(|v| self.read(v));
-                self.expr(index);
+            ExprKind::Element(all, index) => {
+                all.iter().for_each(|v| self.read(v));
+                index.iter().for_each(|e| self.expr(e));
             }
             ExprKind::Not(x) | ExprKind::Neg(x) | ExprKind::Convert(x) | ExprKind::Trunc(x) => self.expr(x),
             ExprKind::Rise(x) | ExprKind::Fall(x) => self.watched(x),
@@ -220,9 +219,9 @@ impl<'a> Walk<'a> {
     fn target(&mut self, t: &'a Target) {
         match t {
             Target::Var(v) | Target::Member(v, _) => self.write(*v),
-            Target::Element(v, count, index) => {
-                elements(*v, *count).for_each(|v| self.write(v));
-                self.expr(index);
+            Target::Element(all, index) => {
+                all.iter().for_each(|v| self.write(v));
+                index.iter().for_each(|e| self.expr(e));
             }
         }
     }

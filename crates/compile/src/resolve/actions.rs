@@ -182,7 +182,7 @@ impl Resolver<'_, '_> {
                 };
                 match self.element(path, index, place)? {
                     Element::Known(v) => self.boolean_target(v, place)?,
-                    Element::Chosen(_, _, ty, _) => return self.needs_known(ty, place),
+                    Element::Chosen(_, ty, _) => return self.needs_known(ty, place),
                 }
             }
             WrittenTarget::Direct(text, place) => {

@@ -12,7 +12,6 @@
 //! last index counting fastest (IEC 61131-3:2003, 2.4.1.2). An index outside of its bounds is a problem where it
 //! is known, and the fault `range` in a run.
 
-use g7_engine::Builtin;
 use g7_model::{
     Array as Written, Expr as WrittenExpr, ExprKind as Form, Name, Path, Problem, Span, Type, VarDecl, codes,
     say,
@@ -22,7 +21,9 @@ use super::refer::Ref;
 use super::resolver::Resolver;
 use super::scopes::{Array, Entity};
 use super::types::{Typed, converted};
-use crate::ir::{BinaryOp, ChartId, Expr, ExprKind, Stmt, StmtKind, Target, Value, VarClass, VarId};
+use crate::ir::{
+    BinaryOp, ChartId, Elements, Expr, ExprKind, Stmt, StmtKind, Target, Value, VarClass, VarId,
+};
 
 /// The elements that one array may have.
 const MOST: u64 = 1 << 16;
@@ -31,8 +32,8 @@ const MOST: u64 = 1 << 16;
 pub(super) enum Element {
     /// A known one.
     Known(VarId),
-    /// The one that an index from 0 (LINT) chooses: first element, number, type, index.
-    Chosen(VarId, u32, Type, Expr),
+    /// The one that indexes from 0 (LINT) choose, and its type.
+    Chosen(Elements, Type, Vec<Expr>),
 }
 
 impl Array {
@@ -219,7 +220,7 @@ impl<'d> Resolver<'_, 'd> {
             all.push(self.index(&array, e, *dimension));
         }
         let all: Option<Vec<Expr>> = all.into_iter().collect();
-        Some(array.chosen(all?, at))
+        Some(array.chosen(all?))
     }
 
     /// An index from 0, LINT; it is within its bounds where it is known.
@@ -240,7 +241,8 @@ impl<'d> Resolver<'_, 'd> {
             return Some(long(place as i64, at));
         }
         let value = converted(value, Type::Lint);
-        Some(if least == 0 { value } else { joined(BinaryOp::Sub, value, long(least, at)) })
+        let kind = ExprKind::Binary(BinaryOp::Sub, Box::new(value.clone()), Box::new(long(least, at)));
+        Some(if least == 0 { value } else { Expr { kind, ty: Type::Lint, at } })
     }
 
     /// The value of an element, or of a bit of one.
@@ -257,14 +259,14 @@ impl<'d> Resolver<'_, 'd> {
                 let part = self.bit_of_element(v, bit)?;
                 self.read(part, at)
             }
-            (Element::Chosen(_, _, ty, _), Some(_)) => self.needs_known(ty, at),
-            (Element::Chosen(_, _, ty @ Type::String(_), _), None) => self.needs_known(ty, at),
-            (Element::Chosen(first, count, ty, index), None) => {
-                let constants = self.var(first).is_some_and(|v| v.class == VarClass::Const);
-                if !constants && !self.may_read(Ref::Var(first), at) {
+            (Element::Chosen(_, ty, _), Some(_)) => self.needs_known(ty, at),
+            (Element::Chosen(_, ty @ Type::String(_), _), None) => self.needs_known(ty, at),
+            (Element::Chosen(all, ty, index), None) => {
+                let constants = self.var(all.first).is_some_and(|v| v.class == VarClass::Const);
+                if !constants && !self.may_read(Ref::Var(all.first), at) {
                     return None;
                 }
-                Some(Typed::of(ExprKind::Element(first, count, Box::new(index)), ty, at))
+                Some(Typed::of(ExprKind::Element(all, index), ty, at))
             }
         }
     }
@@ -278,11 +280,11 @@ impl<'d> Resolver<'_, 'd> {
     ) -> Option<(Target, Type)> {
         match self.element(path, index, at)? {
             Element::Known(v) => self.writable(Ref::Var(v), at),
-            Element::Chosen(_, _, ty @ Type::String(_), _) => self.needs_known(ty, at),
-            Element::Chosen(first, count, ty, index) => {
-                let class = self.var(first).map(|v| v.class)?;
-                self.may_write(first, class, at)?;
-                Some((Target::Element(first, count, Box::new(index)), ty))
+            Element::Chosen(_, ty @ Type::String(_), _) => self.needs_known(ty, at),
+            Element::Chosen(all, ty, index) => {
+                let class = self.var(all.first).map(|v| v.class)?;
+                self.may_write(all.first, class, at)?;
+                Some((Target::Element(all, index), ty))
             }
         }
     }
@@ -300,7 +302,7 @@ impl<'d> Resolver<'_, 'd> {
                 Ref::Bit(v, bit) => Some((v, bit)),
                 _ => None,
             },
-            Element::Chosen(_, _, ty, _) => self.needs_known(ty, at),
+            Element::Chosen(_, ty, _) => self.needs_known(ty, at),
         }
     }
 
@@ -362,34 +364,12 @@ impl<'d> Resolver<'_, 'd> {
 
 impl Array {
     /// The element that indexes from 0 choose.
-    fn chosen(&self, indexes: Vec<Expr>, at: Span) -> Element {
+    fn chosen(&self, indexes: Vec<Expr>) -> Element {
         let places: Option<Vec<i64>> = indexes.iter().map(known).collect();
-        if let Some(places) = places {
-            let place =
-                places.iter().zip(&self.dimensions).fold(0, |n, (i, (_, count))| n * i64::from(*count) + i);
-            return Element::Known(VarId(self.first.0 + place as u32));
-        }
-        let alone = indexes.len() == 1;
-        let mut stride = 1_i64;
-        let mut sum: Option<Expr> = None;
-        for (e, (_, count)) in indexes.into_iter().zip(&self.dimensions).rev() {
-            let part = match known(&e) {
-                Some(n) => long(n * stride, at),
-                None if alone => e,
-                // One index outside of its bounds must not become another element.
-                None => {
-                    let rows = (0..i64::from(*count)).map(|n| long(n * stride, at));
-                    let choice = std::iter::once(e).chain(rows).collect();
-                    Expr { kind: ExprKind::Builtin(Builtin::Mux, choice), ty: Type::Lint, at }
-                }
-            };
-            stride *= i64::from(*count);
-            sum = Some(match sum {
-                Some(sum) => joined(BinaryOp::Add, part, sum),
-                None => part,
-            });
-        }
-        Element::Chosen(self.first, self.count, self.ty, sum.unwrap_or_else(|| long(0, at)))
+        let all = Elements { first: self.first, counts: self.dimensions.iter().map(|(_, n)| *n).collect() };
+        let Some(places) = places else { return Element::Chosen(all, self.ty, indexes) };
+        let place = places.iter().zip(&all.counts).fold(0, |sum, (i, count)| sum * i64::from(*count) + i);
+        Element::Known(VarId(self.first.0 + place as u32))
     }
 }
 
@@ -402,9 +382,4 @@ fn known(e: &Expr) -> Option<i64> {
 
 fn long(n: i64, at: Span) -> Expr {
     Expr { kind: ExprKind::Const(Value::Int(n.into())), ty: Type::Lint, at }
-}
-
-fn joined(op: BinaryOp, a: Expr, b: Expr) -> Expr {
-    let at = a.at;
-    Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b)), ty: Type::Lint, at }
 }

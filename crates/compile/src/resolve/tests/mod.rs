@@ -61,7 +61,7 @@ fn show(unit: &Unit, e: &Expr) -> String {
         ExprKind::Const(Value::Real(x)) => format!("{x:?}"),
         ExprKind::Const(Value::Str(s)) => format!("'{s}'"),
         ExprKind::Var(v) => var(v),
-        ExprKind::Element(v, _, k) => format!("{}[{}]", var(v), show(unit, k)),
+        ExprKind::Element(all, k) => format!("{}[{}]", var(&all.first), show(unit, &k[0])),
         ExprKind::Member(v, m) => format!("{}#{m}", var(v)),
         ExprKind::StepActive(s) => format!("active {}", step(s)),
         ExprKind::StepTime(s) => format!("time {}", step(s)),

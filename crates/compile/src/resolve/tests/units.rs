@@ -10,7 +10,7 @@ use crate::resolve::resolve;
 fn target(unit: &Unit, t: &Target) -> String {
     match t {
         Target::Var(v) => unit.vars[v.index()].name.to_string(),
-        Target::Element(v, _, e) => format!("{}[{}]", unit.vars[v.index()].name, show(unit, e)),
+        Target::Element(all, e) => format!("{}[{}]", unit.vars[all.first.index()].name, show(unit, &e[0])),
         Target::Member(v, m) => format!("{}#{m}", unit.vars[v.index()].name),
     }
 }
