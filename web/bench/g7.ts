@@ -10,6 +10,7 @@ import { page } from '../src/lib/page';
 import { prefs } from '../src/lib/prefs.svelte';
 import { shell } from '../src/lib/shell.svelte';
 import { active, chartText } from './chart';
+import { changed } from './watch.svelte';
 
 prefs.leftOpen = prefs.rightOpen = prefs.bottomOpen = false;
 prefs.view = location.search.includes('text') ? 'text' : 'chart';
@@ -25,9 +26,9 @@ const key = () => new Promise<number>((pressed) => addEventListener('keydown', (
 
 /** From the next key until something is another than before, and painted; in ms. */
 async function until(value: () => unknown): Promise<number> {
-  const before = value();
+  const another = changed(value);
   const start = await key();
-  while (value() === before) await new Promise(requestAnimationFrame);
+  await another;
   await frame();
   return performance.now() - start;
 }

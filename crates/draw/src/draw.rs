@@ -38,6 +38,7 @@ pub fn draw(document: &Document, chart: &Chart, options: &Options) -> Drawing {
 }
 
 /// Draws several charts of a document.
+#[inline(never)]
 pub fn draw_all<'a>(
     document: &Document,
     charts: impl IntoIterator<Item = &'a Chart>,
@@ -54,6 +55,7 @@ pub fn draw_all<'a>(
 }
 
 /// Draws a chart with the entries of its layout section.
+#[inline(never)]
 fn drawing(chart: &Chart, places: &[PlaceAt], options: &Options) -> Drawing {
     let symbols = Symbols::new(chart, options);
     if options.pages {
@@ -158,6 +160,7 @@ impl<'a> Symbols<'a> {
     }
 
     /// Every symbol at its place, in the order of painting.
+    #[inline(never)]
     fn inked(self, placement: &Placement, pages: &[u32]) -> Vec<Inked> {
         let mut items = Vec::new();
         self.links(placement, &mut items);

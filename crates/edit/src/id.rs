@@ -194,6 +194,9 @@ fn number(text: &str) -> Option<usize> {
 }
 
 fn escaped(f: &mut fmt::Formatter<'_>, name: &str) -> fmt::Result {
+    if !name.contains(['/', '>', ':', '%']) {
+        return f.write_str(name);
+    }
     for c in name.chars() {
         match c {
             '/' => f.write_str("%2F")?,

@@ -50,6 +50,7 @@ pub fn apply(source: &Source<'_>, gesture: &Gesture) -> Result<Edit, Refusal> {
 }
 
 /// The same for a chart that is drawn: `anchors` gives the places of its symbols.
+#[inline(never)]
 pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>) -> Result<Edit, Refusal> {
     if let Gesture::Text { splices } = gesture {
         return match spliced(source.text, splices) {

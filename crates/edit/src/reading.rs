@@ -37,6 +37,7 @@ pub(crate) fn judge_problems(source: &Source<'_>, splices: &[Splice], tree: &Tre
 }
 
 /// Checks that the text has the same problems as before, wherever they stand.
+#[inline(never)]
 pub(crate) fn same_problems(source: &Source<'_>, splices: &[Splice], tree: &Tree) -> Result<(), Refusal> {
     let before = |new: &&Problem| {
         source.problems.iter().any(|old| {
@@ -64,6 +65,7 @@ pub(crate) fn mended_first() -> Said {
 }
 
 /// Checks that the text gives exactly the intended document.
+#[inline(never)]
 pub(crate) fn judge(
     source: &Source<'_>,
     splices: &[Splice],

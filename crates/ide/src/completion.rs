@@ -53,12 +53,12 @@ pub fn complete(file: &File, at: usize) -> Completion {
     let from = typed.map_or(byte, |t| t.start);
     let before = if typed.is_some() { before.split_last().map_or(&[][..], |(_, b)| b) } else { &before[..] };
     let readable = file.drawn();
-    let place =
-        Place { text, before, document: readable.document, at: u32::try_from(byte).unwrap_or(u32::MAX) };
+    let prefix = &*text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
+    let at = u32::try_from(byte).unwrap_or(u32::MAX);
+    let place = Place { text, before, prefix, document: readable.document, at };
     let mut items = place.choices();
-    let prefix = text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
-    items.retain(|c| c.label.to_lowercase().contains(&prefix));
-    items.sort_by_key(|c| !c.label.to_lowercase().starts_with(&prefix));
+    items.retain(|c| c.label.to_lowercase().contains(prefix));
+    items.sort_by_key(|c| !c.label.to_lowercase().starts_with(prefix));
     items.dedup();
     items.truncate(200);
     for item in &mut items {
@@ -79,6 +79,8 @@ struct Place<'a> {
     text: &'a str,
     /// The tokens before the word being typed.
     before: &'a [Token],
+    /// The beginning of the word being typed, in small letters.
+    prefix: &'a str,
     document: &'a Document,
     at: u32,
 }
@@ -211,7 +213,9 @@ impl Place<'_> {
         for n in names(self.document) {
             let name = &*n.name.text;
             match n.meaning {
-                Meaning::Step(c, _) if *c.name.text == *owner => found.push(activity(name, &c.name.text)),
+                Meaning::Step(c, _) if *c.name.text == *owner => {
+                    found.push(activity(&step_variable(name), name, &c.name.text))
+                }
                 Meaning::Variable(v, Some(c)) if *c.name.text == *owner => {
                     found.push(choice(name, "variable", declared(name, v), name));
                 }
@@ -290,8 +294,12 @@ impl Place<'_> {
                     };
                     found.push(choice(&path, "variable", declared(name, v), &path));
                 }
+                // There may be thousands of steps, and the text about each costs more than its name.
                 Meaning::Step(c, _) if here.as_ref() == Some(&c.name.text) => {
-                    found.push(activity(name, &c.name.text))
+                    let variable = step_variable(name);
+                    if variable.to_lowercase().contains(self.prefix) {
+                        found.push(activity(&variable, name, &c.name.text));
+                    }
                 }
                 Meaning::Step(..) => {}
                 Meaning::Chart(c) => found.push(choice(name, "chart", crate::tables::kind(c.kind), &shown)),
@@ -309,13 +317,16 @@ impl Place<'_> {
 }
 
 /// The step variable of a step, as an expression writes it.
-fn activity(step: &str, chart: &str) -> Choice {
-    let text = if step.starts_with(|c: char| c.is_ascii_digit()) {
+fn step_variable(step: &str) -> String {
+    if step.starts_with(|c: char| c.is_ascii_digit()) {
         format!("X{step}")
     } else {
         format!("{}.X", g7_syntax::show_name(step))
-    };
-    choice(&text, "step", say!("step `{step}` of `{chart}` is active"), &text)
+    }
+}
+
+fn activity(variable: &str, step: &str, chart: &str) -> Choice {
+    choice(variable, "step", say!("step `{step}` of `{chart}` is active"), variable)
 }
 
 fn keywords(list: &[Word]) -> Vec<Choice> {

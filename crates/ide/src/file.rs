@@ -56,6 +56,7 @@ impl File {
         Ok(File::of(Source::native(name, text.into_bytes(), 0), false))
     }
 
+    #[inline(never)]
     fn of(source: Source, imported: bool) -> File {
         let mut file = File {
             positions: Arc::new(Positions::new(&source.text)),
@@ -78,6 +79,7 @@ impl File {
     }
 
     /// Makes the change of a gesture. What the gesture has read of the new text is not read again.
+    #[inline(never)]
     pub fn make(&mut self, edit: &mut Edit) -> Result<(), Said> {
         self.recorded(&edit.splices, false)?;
         match edit.read.take() {
@@ -189,6 +191,7 @@ impl File {
 
     /// The document to draw a chart from: the present one if the chart and its layout can be read in it,
     /// whatever stands in the rest of the file.
+    #[inline(never)]
     pub fn drawn_chart(&self, name: &str) -> Readable<'_> {
         let parts = self.source.document.items.iter().filter_map(|item| match item {
             Item::Chart(c) if *c.name.text == *name => Some((true, c.at.0)),
@@ -225,6 +228,7 @@ pub fn convert(name: &str, text: String) -> Result<(String, Vec<Problem>), Said>
     converted(Source::new(name, text.into_bytes(), 0))
 }
 
+#[inline(never)]
 fn converted(mut source: Source) -> Result<(String, Vec<Problem>), Said> {
     if source.has_errors() {
         return Err(match source.problems.first() {

@@ -110,7 +110,7 @@ pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
             Meaning::Chart(_) => &mut charts,
             Meaning::Variable(..) | Meaning::Other(..) => &mut variables,
         };
-        list.insert(n.name.text.to_string());
+        list.insert(&*n.name.text);
     }
     let (first, last) = (range.start, range.end);
     let mut out = Vec::new();
@@ -187,7 +187,7 @@ fn is_keyword(
 }
 
 /// `X12`, where there is a step 12.
-fn is_activity(name: &str, steps: &HashSet<String>) -> bool {
+fn is_activity(name: &str, steps: &HashSet<&str>) -> bool {
     name.strip_prefix('X').is_some_and(|s| steps.contains(s))
 }
 

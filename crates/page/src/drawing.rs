@@ -154,6 +154,7 @@ pub(crate) struct Item {
 impl Item {
     /// How far this symbol is moved from another one that is the same but for its number and its places in the
     /// text; `None` if it is another.
+    #[inline(never)]
     pub(crate) fn moved_from(&self, old: &Item) -> Option<Point> {
         // `picture` is compared last, because it is long.
         let Item { id: _, part, area: _, picture, from: _, to: _, square, bar, text, at, .. } = self;
@@ -186,6 +187,7 @@ fn same_ends(ends: Option<&[String; 2]>, old: Option<&[String; 2]>) -> bool {
 }
 
 /// Draws a chart of a file.
+#[inline(never)]
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
     let readable = file.drawn_chart(&wish.chart);
     let options = options(wish);
@@ -202,7 +204,7 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
         kind: sort(chart.kind),
         stale: readable.stale,
         area: Area(drawing.area),
-        items: drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect(),
+        items: unique(drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect()),
     })
 }
 
@@ -233,28 +235,34 @@ struct Names<'a> {
     chart: &'a Chart,
     steps: Vec<&'a Step>,
     transitions: Vec<&'a Transition>,
+    /// The ids of the steps and of the transitions: links name each of them once more.
+    step_ids: Vec<String>,
+    transition_ids: Vec<String>,
     /// The comments of the layout section.
     comments: Vec<&'a str>,
-    seen: std::cell::RefCell<HashMap<String, u32>>,
 }
 
 impl<'a> Names<'a> {
     fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
+        let name = &*chart.name.text;
+        let transitions: Vec<&Transition> = chart.transitions().collect();
         Names {
             readable,
             chart,
             steps: chart.steps().collect(),
-            transitions: chart.transitions().collect(),
+            step_ids: chart.steps().map(|s| ids::step(name, &s.name.text)).collect(),
+            transition_ids: (0..transitions.len()).map(|n| ids::transition(name, n)).collect(),
+            transitions,
             comments: g7_draw::comments(readable.document, chart).map(|(text, _)| text).collect(),
-            seen: Default::default(),
         }
     }
 
+    #[inline(never)]
     fn item(&self, number: usize, item: g7_draw::Item) -> Item {
         let chart = &*self.chart.name.text;
         let (from, to) = self.readable.units(item.at);
         let base = Item { area: Area(item.area), picture: item.picture, from, to, ..Item::default() };
-        let made = match item.part {
+        match item.part {
             g7_draw::Part::Step { step, square } => self.step(step, square, base),
             g7_draw::Part::Action { step, index } => {
                 let name = self.name(step);
@@ -281,21 +289,10 @@ impl<'a> Names<'a> {
             g7_draw::Part::Text => {
                 Item { id: ItemId::other(chart, number).to_string(), part: Part::Text, ..base }
             }
-        };
-        self.unique(made)
-    }
-
-    /// Two steps with the same name are a problem of the chart, but they still get different ids.
-    fn unique(&self, mut item: Item) -> Item {
-        let mut seen = self.seen.borrow_mut();
-        let times = seen.entry(item.id.clone()).or_default();
-        *times += 1;
-        if *times > 1 {
-            item.id = format!("{}#{times}", item.id);
         }
-        item
     }
 
+    #[inline(never)]
     fn step(&self, number: u32, square: Rect, base: Item) -> Item {
         let Some(step) = self.steps.get(number as usize) else { return base };
         let (expansion, sort) = match &step.kind {
@@ -307,7 +304,7 @@ impl<'a> Names<'a> {
         };
         let opened = opens(step).map(str::to_owned).filter(|n| Some(n) != expansion.as_ref());
         Item {
-            id: ids::step(&self.chart.name.text, &step.name.text),
+            id: self.end_id(End::Step(number)),
             part: Part::Step,
             at: Some(Spot(Point { x: square.x + square.w / 2, y: square.y })),
             square: Some(Area(square)),
@@ -321,10 +318,11 @@ impl<'a> Names<'a> {
         }
     }
 
+    #[inline(never)]
     fn transition(&self, number: u32, bar: Rect, text: Rect, base: Item) -> Item {
         let Some(t) = self.transitions.get(number as usize) else { return base };
         Item {
-            id: ids::transition(&self.chart.name.text, number as usize),
+            id: self.end_id(End::Transition(number)),
             part: Part::Transition,
             at: Some(Spot(Point { x: bar.x + bar.w / 2, y: bar.y + bar.h / 2 })),
             bar: Some(Area(bar)),
@@ -350,12 +348,32 @@ impl<'a> Names<'a> {
     }
 
     fn end_id(&self, end: End) -> String {
-        let chart = &self.chart.name.text;
-        match end {
-            End::Step(n) => ids::step(chart, self.name(n)),
-            End::Transition(n) => ids::transition(chart, n as usize),
+        let id = match end {
+            End::Step(n) => self.step_ids.get(n as usize),
+            End::Transition(n) => self.transition_ids.get(n as usize),
+        };
+        id.cloned().unwrap_or_default()
+    }
+}
+
+/// Two steps with the same name are a problem of the chart, but they still get different ids.
+#[inline(never)]
+fn unique(mut items: Vec<Item>) -> Vec<Item> {
+    let mut seen: HashMap<&str, u32> = HashMap::with_capacity(items.len());
+    let mut again = Vec::new();
+    for (n, item) in items.iter().enumerate() {
+        let times = seen.entry(&item.id).or_default();
+        *times += 1;
+        if *times > 1 {
+            again.push((n, *times));
         }
     }
+    for (n, times) in again {
+        if let Some(item) = items.get_mut(n) {
+            item.id = format!("{}#{times}", item.id);
+        }
+    }
+    items
 }
 
 /// Converts hundredths of u to px; a u is 10 px.

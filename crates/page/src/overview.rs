@@ -79,6 +79,7 @@ struct TestRow {
     plant: Option<String>,
 }
 
+#[inline(never)]
 pub(crate) fn overview(name: &str, file: &File) -> Overview {
     let document = &file.source.document;
     let tests = file.source.tests().map(|t| {
@@ -106,6 +107,7 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
     }
 }
 
+#[inline(never)]
 fn switches(document: &Document) -> Vec<SwitchRow> {
     let profile = document.profile();
     let name = profile.map_or(ProfileName::default(), |p| p.name);
@@ -130,6 +132,7 @@ fn bound(document: &Document) -> Bound {
 /// The scan time if the file gives none.
 const SCAN: Nanos = Nanos::from_millis(10);
 
+#[inline(never)]
 fn charts(file: &File) -> Vec<ChartRow> {
     let readable = file.drawn();
     let document = readable.document;

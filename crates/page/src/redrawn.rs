@@ -110,6 +110,7 @@ impl Shown {
 
     /// Answers with a drawing, as its difference from the one that the page has, if that is known, and
     /// keeps it if the page asks so.
+    #[inline(never)]
     pub(crate) fn answer(&mut self, wish: &Wish, drawn: Drawn) -> Redrawn<'_> {
         self.settle();
         let Some(since) = wish.since else {
@@ -127,6 +128,7 @@ impl Shown {
 }
 
 impl<'a> Redrawn<'a> {
+    #[inline(never)]
     fn new(drawn: &'a Drawn, number: Option<u64>, old: Option<(u64, &[Item])>) -> Redrawn<'a> {
         let (since, old) = match old {
             Some((since, items)) => (Some(since), items),
@@ -160,6 +162,7 @@ impl<'a> Kept<'a> {
     }
 
     /// Adds a symbol, if it follows the others in the other drawing and has moved with them.
+    #[inline(never)]
     fn add(&mut self, k: usize, by: Spot, was: &Item, item: &'a Item) -> bool {
         let renumbered = is_renumbered(was, item);
         let follows = self.r#as + self.count == k && self.by == by && along(was, item) == Some(self.along);

@@ -71,6 +71,7 @@ impl Tree {
 
     /// Changes the text: each range of bytes of the present text is replaced by the words. The ranges are
     /// in order and do not overlap. Returns false, and changes nothing, if they do not fit the text.
+    #[inline(never)]
     pub fn change(&mut self, edits: &[(Range<usize>, &str)]) -> bool {
         let mut last = 0;
         for (range, _) in edits {
@@ -88,6 +89,7 @@ impl Tree {
     }
 
     /// The same changes, with those that are near each other as one.
+    #[inline(never)]
     fn joined(&self, edits: &[(Range<usize>, &str)]) -> Vec<(Range<usize>, String)> {
         let one = edits.len() > MOST || self.marks.found.is_none();
         let near = if one { usize::MAX } else { NEAR };
@@ -105,6 +107,7 @@ impl Tree {
         out
     }
 
+    #[inline(never)]
     fn read_whole(&mut self) {
         self.marks.reread += self.text.len();
         self.document = Document::default();
@@ -122,6 +125,7 @@ impl Tree {
     }
 
     /// Makes one change and reads what it touches.
+    #[inline(never)]
     fn replace(&mut self, range: Range<usize>, words: &str) {
         let change = Change { start: range.start, end: range.end, now: range.start + words.len() };
         let begin = self.marks.list.partition_point(|m| m.start() < change.start);
@@ -138,6 +142,7 @@ impl Tree {
 
     /// Reads from the mark on until the rest is known. `None` if there are then too many problems; the
     /// document is lost in that case.
+    #[inline(never)]
     fn read_part(&mut self, change: Change, begin: Option<usize>, mut found: Vec<Problem>) -> Option<()> {
         let mut marks = std::mem::take(&mut self.marks.list);
         let mut document = std::mem::take(&mut self.document);
@@ -234,6 +239,7 @@ impl Inner {
     }
 
     /// Puts the items behind those of an item of the file, which ends where they did.
+    #[inline(never)]
     fn join(self, item: Option<&mut Item>, by: i32) {
         match (self, item) {
             (Inner::Chart(mut items, end), Some(Item::Chart(c))) => {
@@ -254,6 +260,7 @@ impl Inner {
 impl Known {
     /// Appends the known rest of the text to the part that was read anew. The rest begins at the mark `met`.
     /// `None` if there are then too many problems.
+    #[inline(never)]
     fn join(mut self, reading: &mut Reading, met: usize, base: &Base, change: Change) -> Option<()> {
         let by = change.by();
         let mut marks = reading.before.split_off(met.min(reading.before.len()));

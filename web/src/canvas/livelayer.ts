@@ -52,6 +52,7 @@ class Texts {
 
 export class LiveLayer {
   #paths = new Map<Kind, SVGPathElement>();
+  #was = new Map<Kind, string>();
   #times: Texts;
   #others: Texts;
   #values: Texts;
@@ -76,7 +77,12 @@ export class LiveLayer {
     if (far) farMarks(scene, live, drawn);
     else this.#near(scene, live, window, drawn);
     for (const texts of [this.#times, this.#others, this.#values]) texts.end();
-    for (const [kind, path] of this.#paths) set(path, 'd', drawn.get(kind) ?? '');
+    for (const [kind, path] of this.#paths) {
+      const now = drawn.get(kind) ?? '';
+      if (now === (this.#was.get(kind) ?? '')) continue;
+      this.#was.set(kind, now);
+      path.setAttribute('d', now);
+    }
   }
 
   #near(scene: Scene, live: Live, [x, y, right, low]: [number, number, number, number], drawn: Map<Kind, string>): void {

@@ -12,11 +12,9 @@ export class Scene {
   readonly drawing: Drawing;
   readonly items: Item[];
   readonly byId = new Map<string, Item>();
-  /** For each step or transition the ids of its followers. */
-  readonly after = new Map<string, string[]>();
-  readonly before = new Map<string, string[]>();
   /** For each step its actions. */
   readonly actions = new Map<string, Item[]>();
+  #joined: { after: Map<string, string[]>; before: Map<string, string[]> } | null = null;
   #lines = new Map<string, Point[]>();
   #rectangles = new Map<string, Box>();
   #tokens = new Map<string, number>();
@@ -27,21 +25,39 @@ export class Scene {
     for (const item of this.items) {
       this.byId.set(item.id, item);
       const of = item.part === 'action' ? actionOf(item.id) : null;
-      if (of) this.actions.set(of.step, [...(this.actions.get(of.step) ?? []), item]);
-      if (item.ends) this.#join(item.ends[0], item.ends[1]);
+      if (!of) continue;
+      const known = this.actions.get(of.step);
+      if (known) known.push(item);
+      else this.actions.set(of.step, [item]);
     }
-    const x = (id: string) => this.byId.get(id)?.at?.[0] ?? 0;
-    for (const side of [this.after, this.before]) side.forEach((ids) => ids.sort((a, b) => x(a) - x(b)));
   }
 
-  #join(from: string, to: string): void {
+  /** For each step or transition the ids of its followers. */
+  get after(): ReadonlyMap<string, string[]> {
+    return this.#neighbours().after;
+  }
+
+  get before(): ReadonlyMap<string, string[]> {
+    return this.#neighbours().before;
+  }
+
+  /** Who follows whom; most scenes are not asked for it. */
+  #neighbours(): { after: Map<string, string[]>; before: Map<string, string[]> } {
+    if (this.#joined) return this.#joined;
+    const joined = { after: new Map<string, string[]>(), before: new Map<string, string[]>() };
     const put = (side: Map<string, string[]>, a: string, b: string) => {
       const known = side.get(a);
       if (!known) side.set(a, [b]);
       else if (!known.includes(b)) known.push(b);
     };
-    put(this.after, from, to);
-    put(this.before, to, from);
+    for (const { ends } of this.items) {
+      if (!ends) continue;
+      put(joined.after, ends[0], ends[1]);
+      put(joined.before, ends[1], ends[0]);
+    }
+    const x = (id: string) => this.byId.get(id)?.at?.[0] ?? 0;
+    for (const side of [joined.after, joined.before]) side.forEach((ids) => ids.length > 1 && ids.sort((a, b) => x(a) - x(b)));
+    return (this.#joined = joined);
   }
 
   /** The given symbols, and the transitions that are linked to no other steps: a drag moves them
@@ -214,8 +230,12 @@ export class Scene {
 
   /** The box of the step where the chart begins. */
   first(): Box {
-    const steps = this.ordered().filter((i) => i.part === 'step');
-    const begin = steps.find((s) => s.initial) ?? steps.find((s) => s.step === 'entry') ?? steps[0];
+    const rank = (step: Item) => (step.initial ? 0 : step.step === 'entry' ? 1 : 2);
+    let begin: Item | null = null;
+    for (const item of this.items) {
+      if (item.part !== 'step') continue;
+      if (!begin || (rank(item) - rank(begin) || reading(item, begin)) < 0) begin = item;
+    }
     return begin ? this.core(begin) : [0, 0, 0, 0];
   }
 
@@ -223,9 +243,12 @@ export class Scene {
   ordered(): Item[] {
     return this.items
       .filter((i) => i.part === 'step' || i.part === 'transition')
-      .sort((a, b) => (a.at?.[1] ?? 0) - (b.at?.[1] ?? 0) || (a.at?.[0] ?? 0) - (b.at?.[0] ?? 0));
+      .sort(reading);
   }
 }
+
+/** Compares symbols in reading order. */
+const reading = (a: Item, b: Item): number => (a.at?.[1] ?? 0) - (b.at?.[1] ?? 0) || (a.at?.[0] ?? 0) - (b.at?.[0] ?? 0);
 
 export function middle([x, y, w, h]: Box): Point {
   return [x + w / 2, y + h / 2];

@@ -12,6 +12,12 @@ import type { Scene } from './scene';
 const SVG = 'http://www.w3.org/2000/svg';
 /** Side of a block, in px at 100 %. */
 const BLOCK = 640;
+/** Round the view, in px of the screen: the blocks that are drawn with it, those drawn in advance once the view has stood
+ * still for `PAUSE` ms, and those that stay in the document. */
+const ROUND = 20;
+const ADVANCE = 300;
+const LEAVE = 900;
+const PAUSE = 150;
 /** Below this zoom texts cannot be read and are left out. */
 export const FAR = 0.3;
 
@@ -48,6 +54,7 @@ export class Surface {
   /** The blocks of each cell and layer. */
   #cells = new Map<number, Block[]>();
   #name: Namer;
+  #pause = 0;
 
   constructor(root: SVGGElement, name: Namer) {
     this.root = root;
@@ -56,45 +63,76 @@ export class Surface {
     root.append(...LAYERS.map((layer) => this.#layers[layer]));
   }
 
-  /** Shows another drawing; blocks whose symbols look the same keep their nodes. */
+  /** Shows another drawing; symbols that look the same keep their nodes, unless they have left their block. */
   set(scene: Scene, again = false): void {
     const old = this.#cells;
     this.#cells = new Map();
     for (const item of scene.items) this.#put(item);
     for (const [cell, were] of old) {
       const blocks = again ? [] : (this.#cells.get(cell) ?? []);
+      const rest: Block[] = [];
       for (const was of were) {
         if (!was.node) continue;
         const block = blocks.find((block) => !block.node && alike(was, block));
         if (block) this.#keep(was, block);
-        else was.node.remove();
+        else rest.push(was);
+      }
+      for (const was of rest) {
+        const block = was.shown === 'near' ? nearest(was, blocks) : null;
+        if (block) this.#mend(was, block);
+        else was.node?.remove();
       }
     }
   }
 
   /** Gives the nodes of a block to the block that looks like it. */
   #keep(was: Block, block: Block): void {
-    const node = was.node as SVGElement;
-    block.node = node;
-    block.shown = was.shown;
+    take(was, block);
     block.names = was.names;
-    const [before, after] = [placing(was.items[0] as Item), placing(block.items[0] as Item)];
-    if (before !== after) place(node, after);
     if (block.shown !== 'near') return;
+    // The list of children is slow, and in most blocks nothing is named anew.
+    let children: Element[] | undefined;
     block.items.forEach((item, n) => {
-      const old = was.items[n] as Item;
-      if (old === item) return;
-      const child = node.children[n] as SVGElement;
-      if (old.id !== item.id) {
-        child.setAttribute('data-id', item.id);
-        if (spoken(item)) child.id = domId(item.id);
-      }
-      if (!spoken(item)) return;
-      const name = this.#name(item);
-      if (name === block.names[n]) return;
-      child.setAttribute('aria-label', name);
-      block.names[n] = name;
+      if (was.items[n] === item) return;
+      children ??= [...(block.node?.children ?? [])];
+      this.#rename(children[n] as Element, was.items[n] as Item, block, n);
     });
+  }
+
+  /** Gives the nodes of a block to one that has many of its symbols; the others are taken out and put in. */
+  #mend(was: Block, block: Block): void {
+    const node = was.node as SVGElement;
+    const children = [...node.children];
+    take(was, block);
+    let at = 0;
+    block.items.forEach((item, n) => {
+      const found = was.items.findIndex((old, k) => k >= at && same(old, item));
+      if (found < 0) {
+        const made = group();
+        block.names[n] = spoken(item) ? this.#name(item) : '';
+        made.innerHTML = near(item, block.names[n] as string);
+        node.insertBefore(made.firstElementChild as Element, children[at] ?? null);
+        return;
+      }
+      for (; at < found; at++) children[at]?.remove();
+      block.names[n] = was.names[found] as string;
+      this.#rename(children[at++] as Element, was.items[found] as Item, block, n);
+    });
+    for (; at < children.length; at++) children[at]?.remove();
+  }
+
+  /** Brings the names of a node up to date, which showed another symbol. */
+  #rename(child: Element, old: Item, block: Block, n: number): void {
+    const item = block.items[n] as Item;
+    if (old.id !== item.id) {
+      child.setAttribute('data-id', item.id);
+      if (spoken(item)) child.id = domId(item.id);
+    }
+    if (!spoken(item)) return;
+    const name = this.#name(item);
+    if (name === block.names[n]) return;
+    child.setAttribute('aria-label', name);
+    block.names[n] = name;
   }
 
   #put(item: Item): void {
@@ -116,20 +154,35 @@ export class Surface {
     block.items.push(item);
   }
 
-  /** Shows a window of the plane; `k` is the zoom. */
+  /** Shows a window of the plane; `k` is the zoom. What stands round it is drawn when the view stands still. */
   show(x: number, y: number, right: number, low: number, k: number): void {
+    clearTimeout(this.#pause);
+    if (this.#show(x, y, right, low, k, ROUND)) this.#pause = window.setTimeout(() => this.#show(x, y, right, low, k, ADVANCE), PAUSE);
+  }
+
+  /** Draws the blocks within some px of the window; true if there is something to be drawn in advance. */
+  #show(x: number, y: number, right: number, low: number, k: number, round: number): boolean {
     const want = k < FAR ? 'far' : 'near';
-    const [enter, leave] = [300 / k, 900 / k];
-    for (const b of [...this.#cells.values()].flat()) {
-      const beyond = Math.max(x - b.right, b.x - right, y - b.low, b.y - low);
-      if (b.shown === want ? beyond <= leave : beyond <= enter) {
-        if (b.shown !== want) this.#draw(b, want);
-      } else if (b.node) {
-        b.node.remove();
-        b.node = null;
-        b.shown = null;
+    let more = false;
+    for (const blocks of this.#cells.values()) {
+      for (const b of blocks) {
+        const beyond = Math.max(x - b.right, b.x - right, y - b.low, b.y - low) * k;
+        if (b.shown === want ? beyond <= LEAVE : beyond <= round) {
+          if (b.shown !== want) this.#draw(b, want);
+        } else {
+          more ||= beyond <= ADVANCE;
+          if (!b.node) continue;
+          b.node.remove();
+          b.node = null;
+          b.shown = null;
+        }
       }
     }
+    return more;
+  }
+
+  drop(): void {
+    clearTimeout(this.#pause);
   }
 
   /** The node of a symbol, if it is in the document. */
@@ -169,9 +222,33 @@ function near(item: Item, name: string): string {
   return `<g data-id="${id}" id="${escaped(domId(item.id))}" role="img" aria-label="${escaped(name)}">${item.svg}</g>`;
 }
 
-/** True if the symbols of two blocks look the same, wherever they stand. */
-function alike({ items: was }: Block, { items }: Block): boolean {
-  return was.length === items.length && items.every((item, n) => item.svg === was[n]?.svg && item.far === was[n]?.far && spoken(item) === spoken(was[n] as Item));
+/** True if two symbols look the same, wherever they stand. */
+const same = (was: Item, item: Item): boolean => item.svg === was.svg && item.far === was.far && spoken(item) === spoken(was);
+
+/** True if the symbols of two blocks look the same. */
+const alike = ({ items: was }: Block, { items }: Block): boolean =>
+  was.length === items.length && items.every((item, n) => same(was[n] as Item, item));
+
+/** The block without nodes that has most symbols of another one, if these are at least half of its own. */
+function nearest(was: Block, blocks: Block[]): Block | null {
+  const looks = new Set(was.items.map((item) => item.svg));
+  let best: Block | null = null;
+  let most = 0;
+  for (const block of blocks) {
+    if (block.node) continue;
+    const count = block.items.filter((item) => looks.has(item.svg)).length;
+    if (count > most && count * 2 >= block.items.length) [best, most] = [block, count];
+  }
+  return best;
+}
+
+/** Gives the node of a block to another one. */
+function take(was: Block, block: Block): void {
+  const node = was.node as SVGElement;
+  block.node = node;
+  block.shown = was.shown;
+  const [before, after] = [placing(was.items[0] as Item), placing(block.items[0] as Item)];
+  if (before !== after) place(node, after);
 }
 
 function place(node: SVGElement, how: string | undefined): void {

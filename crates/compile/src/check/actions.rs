@@ -9,6 +9,7 @@ use super::solve::Question;
 use super::tree::{Form, has_edge};
 use crate::ir::{Action, ActionKind, Expr, Step, StepId, StepSort, Unit, VarId};
 
+#[inline(never)]
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     let grafcet = is_grafcet(unit);
@@ -31,6 +32,7 @@ pub(super) fn is_grafcet(unit: &Unit) -> bool {
 }
 
 /// Warns of a body under `P` that runs twice.
+#[inline(never)]
 fn pulse(unit: &Unit, action: &Action, problems: &mut Vec<Problem>) {
     if let ActionKind::Named { qualifier: Qualifier::P, .. }
     | ActionKind::Work { qualifier: Qualifier::P, .. } = &action.kind
@@ -57,6 +59,7 @@ fn macro_acts(step: &Step, action: &Action, problems: &mut Vec<Problem>) {
 }
 
 /// Warns of an event without an edge: it can stay true, and its action runs again and again.
+#[inline(never)]
 fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
     let ActionKind::OnEvent { event, .. } = &action.kind else { return };
     if !has_edge(event) {
@@ -86,6 +89,7 @@ fn event(facts: &Facts<'_>, action: &Action, problems: &mut Vec<Problem>) {
 }
 
 /// Warns of an edge in the condition of a continuous action.
+#[inline(never)]
 fn condition(action: &Action, problems: &mut Vec<Problem>) {
     let (ActionKind::Variable { qualifier, condition: Some(c), .. }
     | ActionKind::Named { qualifier, condition: Some(c), .. }
@@ -115,6 +119,7 @@ enum Governed {
 
 /// Warns if one control block gets two times: two timed qualifiers of one action in one step, or in
 /// steps that one transition activates together.
+#[inline(never)]
 fn times(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
     let mut told: HashSet<Span> = HashSet::new();
@@ -153,6 +158,7 @@ fn of_step(unit: &Unit, step: StepId) -> impl Iterator<Item = (StepId, &Action)>
 
 /// Returns a timed qualifier that has a control block. In GRAFCET `L` and `D` of a variable are
 /// continuous actions and have none.
+#[inline(never)]
 fn timed<'a>(
     blocked: &HashSet<VarId>,
     continuous: bool,
@@ -170,6 +176,7 @@ fn timed<'a>(
 }
 
 /// The variables with a control block: all their qualifiers are inputs of it.
+#[inline(never)]
 pub(super) fn blocked(unit: &Unit) -> HashSet<VarId> {
     use Qualifier::{D, L, N, R, S};
     let actions = unit.steps.iter().flat_map(|s| &s.actions);

@@ -14,6 +14,7 @@ use super::formula::{Atom, Formula, Part, Sort, Values, holds, is_taken};
 const TICKS: u64 = 200_000;
 
 /// Tells whether all goals of a question can be true together; `None` if that takes too much work.
+#[inline(never)]
 pub(super) fn possible(atoms: &[Atom<'_>], parts: &[Formula<'_>], goals: &[Part]) -> Option<bool> {
     let mut coding = Coding::new(atoms);
     let parts: Vec<Literal> = parts.iter().fold(Vec::new(), |mut known, formula| {
@@ -42,6 +43,7 @@ struct Coding<'q, 'e> {
 }
 
 impl<'q, 'e> Coding<'q, 'e> {
+    #[inline(never)]
     fn new(question: &'q [Atom<'e>]) -> Coding<'q, 'e> {
         let mut solver = Batsat::new(&|| false);
         solver.stop_at(TICKS);
@@ -85,6 +87,7 @@ impl<'q, 'e> Coding<'q, 'e> {
         parts.get(part.0).copied().unwrap_or(self.yes)
     }
 
+    #[inline(never)]
     fn formula(&mut self, formula: &Formula<'e>, parts: &[Literal]) -> Literal {
         let of = |part: &Part| self.of(parts, *part);
         match formula {
@@ -120,6 +123,7 @@ impl<'q, 'e> Coding<'q, 'e> {
         new
     }
 
+    #[inline(never)]
     fn among(&mut self, atom: usize, values: &Values<'_>) -> Literal {
         let (op, equal) = match (values, self.question.get(atom).map(|a| &a.sort)) {
             (Values::Side(op, cut), Some(Sort::Place(_, cuts))) => {

@@ -11,6 +11,7 @@ use super::tree::statements;
 use crate::circles::closing_calls;
 use crate::ir::{ActionKind, Chart, ChartRole, Service, StepId, StepSort, StmtKind, Transition, Unit};
 
+#[inline(never)]
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     for (i, chart) in unit.charts.iter().enumerate() {
@@ -31,6 +32,7 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 
 /// True if a chart is not moved by its transitions alone: an order forces, enables or masks it, or a statement
 /// sets its steps.
+#[inline(never)]
 fn driven(unit: &Unit, chart: usize) -> bool {
     let forced = unit.steps.iter().flat_map(|s| &s.actions).any(|a| {
         matches!(&a.kind, ActionKind::Force(c, _) | ActionKind::Enable(c) | ActionKind::MaskChart(c) if c.index() == chart)
@@ -47,6 +49,7 @@ fn driven(unit: &Unit, chart: usize) -> bool {
 
 /// Steps that no transition follows, in a chart that otherwise goes round: some step of it comes
 /// back to itself.
+#[inline(never)]
 fn dead_ends(facts: &Facts<'_>, chart: &Chart, problems: &mut Vec<Problem>) {
     let steps = steps_of(facts.unit, chart);
     if !goes_round(facts, chart) {
@@ -100,6 +103,7 @@ fn joins(facts: &Facts<'_>, fork: &Transition) -> bool {
 
 /// By step: true if a token can come there from a step, by transitions other than `except`. The step
 /// itself counts.
+#[inline(never)]
 fn reach(facts: &Facts<'_>, from: StepId, except: &Transition) -> Vec<bool> {
     let mut found = vec![false; facts.unit.steps.len()];
     let mut pending = vec![from];

@@ -30,6 +30,7 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 }
 
 /// Warns of a receptivity that no values make true.
+#[inline(never)]
 fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
     let what = match &t.receptivity.kind {
         ExprKind::Const(Value::Bool(false)) => say!("this receptivity is never true"),
@@ -53,6 +54,7 @@ fn never(facts: &Facts<'_>, t: &Transition, problems: &mut Vec<Problem>) {
 
 /// True if an expression joins variables of which none stands there twice: each can have both
 /// values, whatever the others have, and so can the expression. No search is needed then.
+#[inline(never)]
 fn is_free(e: &Expr, seen: &mut Vec<VarId>) -> bool {
     match &e.kind {
         ExprKind::Var(v) if seen.contains(v) || seen.len() > MOST_FREE => false,
@@ -81,6 +83,7 @@ fn hangs_on_a_variable(e: &Expr) -> bool {
 }
 
 /// True if the expression is true for all values of its parts.
+#[inline(never)]
 pub(super) fn always(facts: &Facts<'_>, e: &Expr, active: &[StepId]) -> bool {
     match &e.kind {
         ExprKind::Const(v) => *v == Value::Bool(true),
@@ -96,6 +99,7 @@ pub(super) fn always(facts: &Facts<'_>, e: &Expr, active: &[StepId]) -> bool {
 }
 
 /// Warns of priorities that have no effect.
+#[inline(never)]
 fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let rules = &facts.unit.rules;
     for t in &facts.unit.transitions {
@@ -127,6 +131,7 @@ fn priorities(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 }
 
 /// For each branch, the first branch before it that can clear at the same time.
+#[inline(never)]
 fn conflicts(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     let mut budget = PAIRS;
@@ -168,6 +173,7 @@ fn same(a: &[StepId], b: &[StepId]) -> bool {
     a == b || (a.len() > 1 || b.len() > 1) && set(a) == set(b)
 }
 
+#[inline(never)]
 fn conflict(unit: &Unit, step: StepId, a: &Transition, b: &Transition) -> Problem {
     let name = unit.steps.get(step.index()).map_or("", |s| &*s.name);
     let what = say!("two branches behind step `{name}` can be true together, and then both clear");

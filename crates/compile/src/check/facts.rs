@@ -24,6 +24,7 @@ pub(super) struct Facts<'u> {
 
 impl<'u> Facts<'u> {
     /// The facts that hold by the form of the charts alone; `settle` looks at the receptivities too.
+    #[inline(never)]
     pub(super) fn by_form(unit: &'u Unit) -> Facts<'u> {
         let mut branches = vec![Vec::new(); unit.steps.len()];
         for (i, t) in unit.transitions.iter().enumerate() {
@@ -68,6 +69,7 @@ impl<'u> Facts<'u> {
     }
 
     /// A step and the macro-steps around it, each with its chart.
+    #[inline(never)]
     fn way(&self, step: StepId) -> Vec<(ChartId, StepId)> {
         let mut way = Vec::new();
         let mut at = Some(step);
@@ -90,6 +92,7 @@ impl<'u> Facts<'u> {
 
     /// True if an expression keeps its value from the moment when edges are taken until the
     /// receptivities have been evaluated.
+    #[inline(never)]
     pub(super) fn steady(&self, e: &Expr) -> bool {
         let fine = match &e.kind {
             ExprKind::Var(v) | ExprKind::Member(v, _) => self.stays(*v),
@@ -107,6 +110,7 @@ impl<'u> Facts<'u> {
 
     /// Finds the charts whose transitions each have one preceding step and at most one succeeding
     /// step, and that nothing else puts a second token into.
+    #[inline(never)]
     fn shapes(&self) -> Vec<bool> {
         let mut single: Vec<bool> = self.unit.charts.iter().map(|c| self.shape(c)).collect();
         let mut lose = |c: ChartId| {
@@ -137,6 +141,7 @@ impl<'u> Facts<'u> {
         single
     }
 
+    #[inline(never)]
     fn shape(&self, chart: &Chart) -> bool {
         let transitions = super::structure::transitions_of(self.unit, chart);
         let steps = super::structure::steps_of(self.unit, chart);

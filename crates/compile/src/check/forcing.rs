@@ -24,6 +24,7 @@ struct Order<'u> {
 }
 
 /// The chart, outside of all expansions, that this chart belongs to.
+#[inline(never)]
 fn outermost(unit: &Unit, mut chart: ChartId) -> ChartId {
     // `resolve` has checked that nesting is finite; the bound only guards against an error here.
     for _ in 0..unit.charts.len() {
@@ -38,6 +39,7 @@ fn outermost(unit: &Unit, mut chart: ChartId) -> ChartId {
     chart
 }
 
+#[inline(never)]
 fn orders(unit: &Unit) -> Vec<Order<'_>> {
     let mut list = Vec::new();
     for (i, step) in unit.steps.iter().enumerate() {
@@ -58,6 +60,7 @@ fn orders(unit: &Unit) -> Vec<Order<'_>> {
 
 /// Finds charts that force themselves or a chart that encloses them, directly or through others.
 /// For this an enclosing step controls its charts as a forcing order does.
+#[inline(never)]
 fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     let mut rules: BTreeMap<ChartId, BTreeSet<ChartId>> = BTreeMap::new();
     for order in orders {
@@ -100,6 +103,7 @@ fn circles(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
 }
 
 /// A chart that is both forced and enclosed.
+#[inline(never)]
 fn both(facts: &Facts<'_>, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     for order in orders {
@@ -120,6 +124,7 @@ fn both(facts: &Facts<'_>, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
 
 /// Finds two orders at one moment, from one step or from steps that one transition activates
 /// together, that demand different situations of one chart.
+#[inline(never)]
 fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
     let mut by_step: BTreeMap<StepId, Vec<usize>> = BTreeMap::new();
     for (i, order) in orders.iter().enumerate() {
@@ -157,6 +162,7 @@ fn disagree(unit: &Unit, orders: &[Order<'_>], problems: &mut Vec<Problem>) {
 }
 
 /// The situation that an order demands; `None` for `{*}`, which keeps the present one.
+#[inline(never)]
 fn wanted(unit: &Unit, order: &Order<'_>) -> Option<BTreeSet<StepId>> {
     let (chart, situation) = order.situation;
     match situation {

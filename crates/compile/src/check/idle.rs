@@ -10,6 +10,7 @@ use g7_model::{Document, Item, Problem, VarDecl, VarKind, codes, say};
 
 use super::named::names_of_charts;
 
+#[inline(never)]
 pub(super) fn check(doc: &Document, problems: &mut Vec<Problem>) {
     let declared = doc.items.iter().filter_map(|i| match i {
         Item::Var(v) if matches!(v.kind, VarKind::Input | VarKind::Output) => Some(v),

@@ -21,6 +21,7 @@ const SHOWN: usize = 8;
 /// The number of situations that are tried in one circle, in addition to twice its size.
 const LENGTH: usize = 64;
 
+#[inline(never)]
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     let ever: Vec<&Transition> = unit
@@ -89,6 +90,7 @@ fn end(unit: &Unit, mut step: StepId, entry: bool) -> StepId {
 }
 
 /// Sets of steps that all lead to each other (strongly connected, by two walks).
+#[inline(never)]
 fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
     let steps = unit.steps.len();
     // A transition is a node behind the steps: each of its steps on one side leads to each on the
@@ -125,6 +127,7 @@ fn circles(unit: &Unit, ever: &[&Transition]) -> Vec<Vec<StepId>> {
 }
 
 /// The steps that can be reached from one step, each after those that follow it.
+#[inline(never)]
 fn walk(start: StepId, next: &[Vec<StepId>], seen: &mut [bool], order: &mut Vec<StepId>) {
     if seen.get_mut(start.index()).is_none_or(|s| std::mem::replace(s, true)) {
         return;
@@ -149,6 +152,7 @@ fn walk(start: StepId, next: &[Vec<StepId>], seen: &mut [bool], order: &mut Vec<
 
 /// Clears transitions, beginning with the steps of one transition, until a situation recurs or
 /// nothing changes. Returns the names of the steps of the cycle, if there is one.
+#[inline(never)]
 fn play(unit: &Unit, own: &[&Transition], start: &[StepId], size: usize) -> Option<Vec<String>> {
     let mut now: BTreeSet<StepId> = start.iter().map(|s| leaves(unit, *s)).collect();
     let mut seen: Vec<BTreeSet<StepId>> = Vec::new();

@@ -38,6 +38,7 @@ use crate::ir::Unit;
 use facts::Facts;
 
 /// Runs all checks of the chart, and those of its target if it names one.
+#[inline(never)]
 pub fn check(doc: &Document, unit: &Unit) -> Vec<Problem> {
     let facts = Facts::of(unit);
     let mut problems = Vec::new();

@@ -17,6 +17,7 @@ const STEP_LINES: i32 = 6;
 
 /// Reports the first symbol of each layout that stands beyond the last page; `plc` is the name of the
 /// target.
+#[inline(never)]
 pub(super) fn check(doc: &Document, plc: &Said, problems: &mut Vec<Problem>) {
     for item in &doc.items {
         let Item::Layout(layout) = item else { continue };

@@ -12,6 +12,7 @@ use crate::ir::{
     ActionKind, Chart, ChartId, ChartRole, Service, Situation, StepId, StepSort, StmtKind, Unit,
 };
 
+#[inline(never)]
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
     let mut reached = vec![false; unit.steps.len()];
@@ -44,6 +45,7 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
 }
 
 /// The steps that are active at the start or are set from elsewhere.
+#[inline(never)]
 fn starts(unit: &Unit, pending: &mut Vec<StepId>, outside: &mut [bool]) {
     for (i, step) in unit.steps.iter().enumerate() {
         let chart = unit.charts.get(step.chart.index());
@@ -78,6 +80,7 @@ fn starts(unit: &Unit, pending: &mut Vec<StepId>, outside: &mut [bool]) {
 }
 
 /// Adds the steps that become active together with a step.
+#[inline(never)]
 fn follow(unit: &Unit, id: StepId, pending: &mut Vec<StepId>) {
     match unit.steps.get(id.index()).map(|s| &s.sort) {
         Some(StepSort::Macro(chart)) => {
@@ -98,6 +101,7 @@ fn follow(unit: &Unit, id: StepId, pending: &mut Vec<StepId>) {
     }
 }
 
+#[inline(never)]
 fn tell(unit: &Unit, chart: &Chart, outside: bool, reached: &[bool], problems: &mut Vec<Problem>) {
     // Steps in another chart are not reported again if the step around that chart cannot be
     // reached.

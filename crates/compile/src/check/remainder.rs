@@ -20,6 +20,7 @@ impl<'d> Visitor<'d> for Divisions<'_> {
 
     fn order(&mut self, _: &'d Order) {}
 
+    #[inline(never)]
     fn expr(&mut self, e: &'d Expr) {
         match &e.kind {
             ExprKind::Binary(op, a, b) => {

@@ -23,6 +23,7 @@ impl<'u> Facts<'u> {
 
     /// Tells whether two transitions with a common step can clear together; `None` if that cannot
     /// be decided.
+    #[inline(never)]
     pub(super) fn meet(&self, a: &Transition, b: &Transition) -> Option<bool> {
         if self.unit.rules.numbered_exclusive && a.priority != b.priority {
             return Some(false);
@@ -37,6 +38,7 @@ impl<'u> Facts<'u> {
     }
 
     /// Removes charts in which a choice can double the token, until no more are removed.
+    #[inline(never)]
     fn settle(&mut self) {
         for round in 0.. {
             let mut budget = PAIRS;
@@ -61,6 +63,7 @@ impl<'u> Facts<'u> {
         (chart.steps.start..chart.steps.end).any(|s| self.branches(StepId(s)).len() > 1)
     }
 
+    #[inline(never)]
     fn stays_single(&self, chart: usize, budget: &mut usize) -> bool {
         let Some(chart) = self.unit.charts.get(chart) else { return false };
         // A macro-step that is entered again while it is active gets a second token.
@@ -84,6 +87,7 @@ impl<'u> Facts<'u> {
         true
     }
 
+    #[inline(never)]
     fn branches_exclude(&self, step: StepId, budget: &mut usize) -> bool {
         let rows: Vec<&Transition> =
             self.branches(step).iter().filter_map(|t| self.unit.transitions.get(*t as usize)).collect();

@@ -8,6 +8,7 @@ use super::tree::Form;
 use crate::circles::closing_calls;
 use crate::ir::{Chart, ChartId, ChartRole, Step, StepId, StepSort, Transition, Unit};
 
+#[inline(never)]
 pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     for chart in &unit.charts {
         ends(unit, chart, problems);
@@ -33,6 +34,7 @@ pub(super) fn transitions_of<'u>(unit: &'u Unit, chart: &Chart) -> &'u [Transiti
 }
 
 /// An expansion or task has one entry step and one exit step; a chart has neither.
+#[inline(never)]
 fn ends(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
     if chart.role == ChartRole::Chart {
         for (end, word) in [(chart.entry, say!("an entry step")), (chart.exit, say!("an exit step"))] {
@@ -59,6 +61,7 @@ fn ends(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
 }
 
 /// An expansion without its macro-step and a task that no step calls never run.
+#[inline(never)]
 fn unused(unit: &Unit, problems: &mut Vec<Problem>) {
     let called: HashSet<ChartId> = unit.steps.iter().flat_map(|s| &s.calls).map(|(c, _)| *c).collect();
     for (k, chart) in unit.charts.iter().enumerate() {
@@ -79,6 +82,7 @@ fn unused(unit: &Unit, problems: &mut Vec<Problem>) {
 
 /// Each chart in an initial enclosing step has an initial step itself: activation
 /// links do not act at the start.
+#[inline(never)]
 fn starts_empty(unit: &Unit, problems: &mut Vec<Problem>) {
     for step in unit.steps.iter().filter(|s| s.initial) {
         let StepSort::Enclosing(charts) = &step.sort else { continue };
@@ -106,6 +110,7 @@ fn starts_empty(unit: &Unit, problems: &mut Vec<Problem>) {
 /// A task that calls itself, by a step of its own, of an expansion or of an enclosed
 /// chart in it, or through other tasks: the calling step would wait for the exit step of
 /// the task that it is part of.
+#[inline(never)]
 fn tasks_in_a_circle(unit: &Unit, problems: &mut Vec<Problem>) {
     let mut callees = vec![Vec::new(); unit.charts.len()];
     for step in unit.steps.iter().filter(|s| !s.calls.is_empty()) {
@@ -125,6 +130,7 @@ fn tasks_in_a_circle(unit: &Unit, problems: &mut Vec<Problem>) {
 }
 
 /// The task that a chart is part of: itself, or the one round it.
+#[inline(never)]
 fn task_round(unit: &Unit, chart: ChartId) -> Option<ChartId> {
     let mut at = chart;
     // Charts nested in themselves are reported elsewhere; the way up ends here for them.
@@ -141,6 +147,7 @@ fn task_round(unit: &Unit, chart: ChartId) -> Option<ChartId> {
 }
 
 /// The input and the output step of a task have no action.
+#[inline(never)]
 fn task(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
     for id in [chart.entry, chart.exit].into_iter().flatten() {
         let Some(step) = unit.steps.get(id.index()) else { continue };
@@ -156,6 +163,7 @@ fn task(unit: &Unit, chart: &Chart, problems: &mut Vec<Problem>) {
 }
 
 /// A transition by itself.
+#[inline(never)]
 fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
     if t.from.is_empty() && t.to.is_empty() {
         problems.push(
@@ -181,6 +189,7 @@ fn arms(unit: &Unit, t: &Transition, problems: &mut Vec<Problem>) {
 }
 
 /// Finds two transitions with the same steps and the same receptivity.
+#[inline(never)]
 fn twice(unit: &Unit, problems: &mut Vec<Problem>) {
     let mut all: Vec<&Transition> = unit.transitions.iter().collect();
     all.sort_by_key(|t| sides(t));

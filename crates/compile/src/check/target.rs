@@ -24,6 +24,7 @@ struct Limits {
     total: usize,
 }
 
+#[inline(never)]
 fn limits(plc: TargetPlc) -> Limits {
     match plc {
         TargetPlc::Tsx3710 => {
@@ -49,6 +50,7 @@ pub(super) fn check(doc: &Document, unit: &Unit, plc: TargetPlc, problems: &mut 
 
 /// Compares the counts with the limits. A problem is reported at the first element that exceeds
 /// one.
+#[inline(never)]
 fn sizes(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let (mut main, mut inner, mut macros) = (Vec::new(), Vec::new(), Vec::new());
     for step in &unit.steps {
@@ -82,6 +84,7 @@ fn sizes(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
 }
 
 /// Finds divergences and convergences with too many branches.
+#[inline(never)]
 fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
     let mut wide = |n: usize, what: Said, at: Span| {
         if n > BRANCHES {
@@ -108,6 +111,7 @@ fn branches(unit: &Unit, problems: &mut Vec<Problem>) {
 
 /// Finds actions that PL7 does not have: it knows actions on activation, on deactivation and
 /// continuous ones.
+#[inline(never)]
 fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let mut cannot = |what: Said, at: Span| {
         let text = say!("a {} has no {what}", most.name);
@@ -150,6 +154,7 @@ fn words(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
 
 /// Checks that step names are numbers, each used once in the main charts and once in each
 /// expansion. The ends of an expansion are IN and OUT; macro-steps are `M0` and so on.
+#[inline(never)]
 fn numbers(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     let mut main: BTreeMap<usize, Span> = BTreeMap::new();
     for chart in &unit.charts {
@@ -163,6 +168,7 @@ fn numbers(unit: &Unit, most: &Limits, problems: &mut Vec<Problem>) {
     }
 }
 
+#[inline(never)]
 fn numbers_of(
     unit: &Unit,
     chart: &Chart,

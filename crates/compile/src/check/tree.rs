@@ -9,6 +9,7 @@ use g7_model::Type;
 use crate::ir::{ActionKind, BinaryOp, Expr, ExprKind, Stmt, StmtKind, Target, Unit, Value, VarId};
 
 /// Every statement that runs, also those inside others, in no special order.
+#[inline(never)]
 pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
     let bodies = unit.pre.iter().chain(&unit.post).chain(&unit.bodies);
     let mut list: Vec<&Stmt> = bodies.flat_map(|b| &b.statements).collect();
@@ -26,6 +27,7 @@ pub(super) fn statements(unit: &Unit) -> Vec<&Stmt> {
 }
 
 /// These statements and all inside them.
+#[inline(never)]
 pub(super) fn within<'u>(list: impl IntoIterator<Item = &'u Stmt>) -> Vec<&'u Stmt> {
     let mut pending: Vec<&Stmt> = list.into_iter().collect();
     let mut all = Vec::new();
@@ -54,6 +56,7 @@ pub(super) fn within<'u>(list: impl IntoIterator<Item = &'u Stmt>) -> Vec<&'u St
 }
 
 /// The variables that a statement itself writes; for a function block the instance.
+#[inline(never)]
 pub(super) fn written(s: &Stmt) -> Vec<VarId> {
     let variables = |t: &Target| match t {
         Target::Var(v) | Target::Member(v, _) => vec![*v],
@@ -105,6 +108,7 @@ enum Head<'e> {
     Of(Discriminant<ExprKind>, u32, u8),
 }
 
+#[inline(never)]
 fn head(e: &Expr) -> Head<'_> {
     let form = discriminant(&e.kind);
     match &e.kind {

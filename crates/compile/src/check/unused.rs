@@ -12,6 +12,7 @@ use g7_model::{ChartItem, Document, Item, Problem, VarDecl, VarKind, codes, say}
 
 use super::named::names;
 
+#[inline(never)]
 pub(super) fn check(doc: &Document, problems: &mut Vec<Problem>) {
     let mut declared: Vec<&VarDecl> = Vec::new();
     for item in &doc.items {

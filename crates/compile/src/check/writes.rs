@@ -11,6 +11,7 @@ use crate::ir::{
     Action, ActionKind, Expr, ExprKind, StepId, Stmt, StmtKind, Target, Transition, Unit, VarId,
 };
 
+#[inline(never)]
 pub(super) fn check(unit: &Unit, problems: &mut Vec<Problem>) {
     let blocked = blocked(unit);
     // Where actions run one after another, the later write is not in conflict with the earlier one.
@@ -87,6 +88,7 @@ impl<'w> Before<'w> {
 
 impl<'u> Moment<'u> {
     /// Collects the writes of a step at its activation (P1) or deactivation (P0).
+    #[inline(never)]
     fn step(&mut self, unit: &'u Unit, blocked: &HashSet<VarId>, step: StepId, when: Qualifier) {
         self.group += 1;
         for action in unit.steps.get(step.index()).map_or(&[][..], |s| &s.actions) {
@@ -113,6 +115,7 @@ impl<'u> Moment<'u> {
     }
 
     /// Collects the last constant that a body leaves in each variable in every case.
+    #[inline(never)]
     fn body(&mut self, work: &'u [Stmt], of: Span) {
         let mut last: BTreeMap<VarId, Option<(Constant<'u>, Span)>> = BTreeMap::new();
         for s in work {
@@ -137,6 +140,7 @@ impl<'u> Moment<'u> {
     }
 
     /// Reports each variable that is given two values, once.
+    #[inline(never)]
     fn tell(&self, unit: &Unit, code: &'static g7_model::codes::Code, problems: &mut Vec<Problem>) {
         // Most moments write nothing or one variable.
         if self.writes.len() < 2 {
@@ -166,6 +170,7 @@ impl<'u> Moment<'u> {
 
 /// Collects the writes that always happen when a transition clears: its own stored action, those on
 /// deactivation of the preceding steps, those on activation of the succeeding steps.
+#[inline(never)]
 fn cleared<'u>(unit: &'u Unit, blocked: &HashSet<VarId>, t: &'u Transition) -> Moment<'u> {
     let mut moment = Moment::default();
     moment.body(&t.on_clearing, t.at);
@@ -182,6 +187,7 @@ fn cleared<'u>(unit: &'u Unit, blocked: &HashSet<VarId>, t: &'u Transition) -> M
 }
 
 /// Finds variables that continuous actions drive and something else writes.
+#[inline(never)]
 fn classes(unit: &Unit, blocked: &HashSet<VarId>, problems: &mut Vec<Problem>) {
     let mut driven: BTreeMap<VarId, Span> = BTreeMap::new();
     let mut stored: BTreeMap<VarId, Span> = BTreeMap::new();

@@ -94,6 +94,7 @@ pub fn program(unit: &Unit, queries: &[Expr]) -> Result<(Program, Symbols, Vec<C
     }
 }
 
+#[inline(never)]
 fn refused_by_engine(error: LoadError, symbols: &Symbols) -> Problem {
     match error {
         LoadError::Deep { at } => deep(symbols.place(at)),
@@ -119,6 +120,7 @@ fn deep(at: Span) -> Problem {
 /// # Errors
 ///
 /// A problem with its place where the unit is too large or nested too deeply.
+#[inline(never)]
 pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem> {
     let uses = uses::uses(unit, queries);
     let plan = Plan::new(unit, &uses);
@@ -175,6 +177,7 @@ pub fn lower<'a>(unit: &'a Unit, queries: &'a [Expr]) -> Result<Lowered, Problem
 }
 
 impl Lower<'_> {
+    #[inline(never)]
     fn all(&mut self, queries: &[Expr]) -> (Symbols, Vec<Code>) {
         self.t.code.reserve(self.uses.size);
         self.places.reserve(self.uses.size);

@@ -16,6 +16,7 @@ enum Left {
 
 impl Shapes<'_> {
     /// Places everything beside a sequence; afterwards its height, reach and open ends are known.
+    #[inline(never)]
     pub(crate) fn beside(&mut self, b: usize) {
         let (left, right) = self.sides(b);
         self.lower_last(b, &left);

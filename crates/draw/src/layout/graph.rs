@@ -30,6 +30,7 @@ pub(crate) struct Lists {
 }
 
 impl Lists {
+    #[inline(never)]
     fn new(count: usize, of: impl Iterator<Item = u32> + Clone) -> Lists {
         let mut starts = vec![0u32; count + 1];
         of.clone().for_each(|n| starts[n as usize + 1] += 1);
@@ -55,6 +56,7 @@ impl Lists {
 
 impl Graph {
     /// Builds the graph of a chart. Names that no step has are ignored.
+    #[inline(never)]
     pub(crate) fn new(chart: &Chart) -> Graph {
         let steps: Vec<&Step> = chart.steps().collect();
         let mut numbers: HashMap<&str, u32> = HashMap::with_capacity(steps.len());
@@ -93,6 +95,7 @@ impl Graph {
 
     /// Marks the links that close a loop. A loop is opened at the step where it is entered and,
     /// where possible, never between a step and the transition that follows it.
+    #[inline(never)]
     fn find_loops(&mut self, steps: &[&Step]) {
         let seeds = self.seeds(steps);
         let mut top = self.tops(&seeds);
@@ -112,6 +115,7 @@ impl Graph {
 
     /// All nodes, ordered by how likely a sequence begins there: initial steps first. A node may
     /// occur twice.
+    #[inline(never)]
     fn seeds(&self, steps: &[&Step]) -> Vec<u32> {
         let mut seeds: Vec<u32> = Vec::with_capacity(2 * self.nodes);
         let of = |which: &dyn Fn(&Step) -> bool| {
@@ -128,6 +132,7 @@ impl Graph {
 
     /// The nodes from which a walk has to start so that it reaches every node. The walk passes a
     /// transition only after it has reached all its preceding steps.
+    #[inline(never)]
     fn tops(&self, seeds: &[u32]) -> Vec<bool> {
         let mut top = vec![false; self.nodes];
         let mut seen = vec![false; self.nodes];
@@ -156,6 +161,7 @@ impl Graph {
 
     /// A number for each node; nodes on a common loop (a strongly connected component) share a
     /// number.
+    #[inline(never)]
     fn knots(&self) -> Vec<u32> {
         const NEW: u32 = u32::MAX;
         let mut knot = vec![NEW; self.nodes];
@@ -201,6 +207,7 @@ impl Graph {
 
     /// Walks depth first from the tops. A link closes a loop if it leads to a node on the current
     /// path or to a top of the same component.
+    #[inline(never)]
     fn descend(&mut self, seeds: &[u32], top: &[bool], knots: &[u32]) {
         const NEW: u8 = 0;
         const OPEN: u8 = 1;

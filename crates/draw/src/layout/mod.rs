@@ -44,6 +44,7 @@ use crate::{Placement, Sizes};
 const TRIES: usize = 4;
 
 /// Lays a chart out: automatically, except for the symbols that the layout section places.
+#[inline(never)]
 pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
     let graph = graph::Graph::new(chart);
     let mut broken = vec![false; graph.links.len()];

@@ -13,6 +13,7 @@ use crate::layout::way::Ways;
 use crate::{Bar, End, Extent, Link, Placement, Point, Rect, Sizes};
 
 /// The places that the layout section gives, by node.
+#[inline(never)]
 pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Option<Point>> {
     let mut given = vec![None; graph.nodes];
     if places.is_empty() {
@@ -47,6 +48,7 @@ struct Moved<'a> {
 }
 
 /// The placement after the given places are applied.
+#[inline(never)]
 pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Option<Point>]) -> Placement {
     let count = given.iter().flatten().count();
     if count == 0 {
@@ -83,6 +85,7 @@ fn straighten(graph: &Graph, at: &mut [Point]) {
     }
 }
 
+#[inline(never)]
 fn beside_neighbours(graph: &Graph, at: &mut [Point], given: &[Option<Point>]) {
     let auto = at.to_vec();
     let mut known: Vec<bool> = given.iter().map(Option::is_some).collect();
@@ -108,6 +111,7 @@ impl Moved<'_> {
     }
 
     /// Sets the height at which links part below each node and meet above it.
+    #[inline(never)]
     fn lines(&mut self) {
         let nodes = 0..self.graph.nodes as u32;
         let (mut below, mut above) = (Vec::new(), Vec::new());
@@ -132,6 +136,7 @@ impl Moved<'_> {
 
     /// The height at which the links of a step part: below its actions if there is room and a link
     /// runs past them.
+    #[inline(never)]
     fn parting(&self, n: u32, port: i32, room: i32) -> i32 {
         let usual = port + LINK.min(room / 2);
         // Above the texts of the transitions behind it, if it can.
@@ -155,6 +160,7 @@ impl Moved<'_> {
         if to_right && low > usual && low + CLEAR / 2 <= top { low } else { usual }
     }
 
+    #[inline(never)]
     fn place(&self, auto: Placement, sizes: &Sizes) -> Placement {
         let graph = self.graph;
         let touched = |n: u32, links: &[u32], other: fn((u32, u32)) -> u32| {
@@ -227,6 +233,7 @@ impl Moved<'_> {
 
     /// Draws the double lines of transitions that moved or whose neighbours moved; they span the
     /// columns of their links.
+    #[inline(never)]
     fn bars(&self, p: &mut Placement, below: &[bool], above: &[bool]) {
         let graph = self.graph;
         for t in graph.steps as u32..graph.nodes as u32 {
@@ -250,6 +257,7 @@ impl Moved<'_> {
 
     /// Where a link meets the double line of its transition: over or under the step if the step
     /// stands on the right side of it, otherwise beside the other links.
+    #[inline(never)]
     fn column(&self, link: u32, fork: bool) -> i32 {
         let (from, to) = self.graph.links[link as usize];
         let (t, step) = if fork { (from, to) } else { (to, from) };
@@ -269,6 +277,7 @@ impl Moved<'_> {
         others.min().unwrap_or(self.at[t as usize].x).min(self.at[t as usize].x) - 150 * (1 + place)
     }
 
+    #[inline(never)]
     fn link(&self, ways: &Ways, from: u32, to: u32) -> Link {
         let graph = self.graph;
         let number =

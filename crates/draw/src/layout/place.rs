@@ -32,6 +32,7 @@ pub(crate) struct Places {
 }
 
 /// Computes the places of everything in the shapes.
+#[inline(never)]
 pub(crate) fn places(s: &Shapes) -> Places {
     let nodes = s.graph.nodes;
     let mut p = Places {
@@ -61,6 +62,7 @@ impl Places {
     }
 
     /// The outermost blocks beside one another; the block with the first step comes first.
+    #[inline(never)]
     fn roots(&mut self, s: &Shapes) -> Vec<(u32, i32, i32)> {
         let first = first_steps(s);
         let mut roots: Vec<u32> = (0..s.tree.roots.len() as u32).collect();
@@ -94,6 +96,7 @@ impl Places {
         found
     }
 
+    #[inline(never)]
     fn block(&mut self, s: &Shapes, b: &Block, at: Point, stack: &mut Vec<(u32, i32, i32)>) {
         if let Some(link) = b.branch.first {
             self.column[link as usize] = Some(at.x);
@@ -137,6 +140,7 @@ impl Places {
 
     /// Places the connectors that arrive at a step: at the right of the link above it. If no link
     /// is drawn there, the uppermost connector arrives from above.
+    #[inline(never)]
     fn arrivals(&mut self, s: &Shapes) {
         use crate::layout::rooms::{APART, HEAD, ROW, STUB};
         for (step, links) in s.tree.arrivals.iter().enumerate().filter(|(_, l)| !l.is_empty()) {
@@ -158,6 +162,7 @@ impl Places {
 }
 
 /// The first step, in the order of the text, that each outermost block holds.
+#[inline(never)]
 fn first_steps(s: &Shapes) -> Vec<Option<u32>> {
     let mut root: Vec<u32> = (0..s.blocks.len() as u32).collect();
     let mut first: Vec<Option<u32>> = vec![None; s.tree.roots.len()];

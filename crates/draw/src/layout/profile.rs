@@ -31,6 +31,7 @@ impl Profile {
     }
 
     /// The greatest reach between two heights.
+    #[inline(never)]
     pub(crate) fn most(&self, y0: i32, y1: i32) -> i32 {
         let (from, to) = self.range(y0, y1);
         let (mut from, mut to) = (from + self.size, to + self.size);
@@ -58,6 +59,7 @@ impl Profile {
     }
 
     /// Raises the reach between two heights to at least `reach`.
+    #[inline(never)]
     pub(crate) fn raise(&mut self, y0: i32, y1: i32, reach: i32) {
         let (from, to) = self.range(y0, y1);
         let (mut left, mut right) = (from + self.size, to + self.size);

@@ -44,6 +44,7 @@ struct Reduction<'a> {
 }
 
 /// Reduces a graph; the links in `broken` are broken from the start.
+#[inline(never)]
 pub(crate) fn reduce(graph: &Graph, broken: &[bool]) -> Tree {
     let mut r = Reduction {
         graph,
@@ -79,6 +80,7 @@ pub(crate) fn reduce(graph: &Graph, broken: &[bool]) -> Tree {
 }
 
 impl Reduction<'_> {
+    #[inline(never)]
     fn run(&mut self) {
         let mut ends = Vec::new();
         loop {
@@ -191,6 +193,7 @@ impl Reduction<'_> {
     }
 
     /// Handles a node that is the only beginning or end of the parts that hang at it.
+    #[inline(never)]
     fn end(&mut self, n: u32) {
         let at = n as usize;
         let (ins, outs) = (self.ins[at], self.outs[at]);
@@ -243,6 +246,7 @@ impl Reduction<'_> {
     }
 
     /// The parts that hang below a node; sequences that return to the same step are merged.
+    #[inline(never)]
     fn groups(&mut self, n: u32, whole: bool) -> Vec<Pendant> {
         let mut all = std::mem::take(&mut self.below[n as usize]);
         all.sort_by_key(|p| p.branch.first);
@@ -363,6 +367,7 @@ impl Reduction<'_> {
 
     /// The gain from breaking a sequence: the number of steps it skips in the text, divided by its
     /// length.
+    #[inline(never)]
     fn worth(&self, e: &Edge) -> u64 {
         let span = u64::from(self.place(e.from).abs_diff(self.place(e.to))) + 1;
         let rows = u64::from(e.branch.chain.rows) + 1;
@@ -404,6 +409,7 @@ impl Reduction<'_> {
         }
     }
 
+    #[inline(never)]
     fn cut_edge(&mut self, e: u32) {
         let Edge { from, to, branch, .. } = self.remove(e);
         let chain = branch.chain;
@@ -433,6 +439,7 @@ impl Reduction<'_> {
     }
 
     /// Breaks a sequence before the node it leads to; each branch that ends there is broken too.
+    #[inline(never)]
     fn break_end(&mut self, from: u32, to: u32, branch: Branch) {
         let mut open: Vec<u32> = Vec::new();
         let mut branch = branch;

@@ -66,6 +66,7 @@ fn grid(n: i32) -> i32 {
 }
 
 /// The extents of all nodes, rounded to half units and limited so that no sum overflows.
+#[inline(never)]
 pub(crate) fn extents(graph: &Graph, sizes: &Sizes) -> Vec<Extent> {
     let most = (1_500_000_000 / (4 * (graph.nodes as i64 + 1))).clamp(300, 100_000) as i32;
     let limit = |n: i32| grid(n.clamp(0, most));
@@ -91,6 +92,7 @@ pub(crate) fn extents(graph: &Graph, sizes: &Sizes) -> Vec<Extent> {
 }
 
 /// The width of the text at one end of a broken link.
+#[inline(never)]
 pub(crate) fn connector_width(graph: &Graph, sizes: &Sizes, link: u32, leaving: bool) -> i32 {
     let Some(&(from, to)) = graph.links.get(link as usize) else { return 0 };
     let other = if leaving { to } else { from };
@@ -115,6 +117,7 @@ pub(crate) fn from_above(graph: &Graph, tree: &Tree, step: u32) -> bool {
 }
 
 /// The rooms of all nodes.
+#[inline(never)]
 pub(crate) fn rooms(graph: &Graph, tree: &Tree, sizes: &Sizes) -> Vec<Room> {
     let mut all: Vec<Room> = extents(graph, sizes)
         .into_iter()

@@ -17,6 +17,7 @@ pub(crate) fn end(steps: usize, n: u32) -> End {
 }
 
 /// Computes the links, double lines and connectors.
+#[inline(never)]
 pub(crate) fn route(s: &Shapes, p: &Places) -> Placement {
     let graph = s.graph;
     let (steps, transitions) = p.at.split_at(graph.steps);
@@ -73,6 +74,7 @@ fn start(s: &Shapes, p: &Places, l: usize) -> Vec<Point> {
 }
 
 /// Appends the last points of a link: down to the node below.
+#[inline(never)]
 fn finish(s: &Shapes, p: &Places, l: usize, points: &mut Vec<Point>) {
     let to = s.graph.links[l].1 as usize;
     let at = p.at[to];
@@ -88,6 +90,7 @@ fn finish(s: &Shapes, p: &Places, l: usize, points: &mut Vec<Point>) {
 
 /// Appends the points of a return (to the left, up beside the chart, into the step from above) and
 /// gives its arrows.
+#[inline(never)]
 fn up(s: &Shapes, p: &Places, back: u32, to: u32, points: &mut Vec<Point>) -> Vec<(Point, (i8, i8))> {
     let at = p.at[to as usize];
     let (row, lane) = (p.row[back as usize], p.lane[back as usize]);
@@ -105,6 +108,7 @@ fn up(s: &Shapes, p: &Places, back: u32, to: u32, points: &mut Vec<Point>) -> Ve
 }
 
 /// Removes points at which the line does not turn.
+#[inline(never)]
 pub(crate) fn tidy(points: Vec<Point>) -> Vec<Point> {
     let mut found: Vec<Point> = Vec::with_capacity(points.len());
     for p in points {
@@ -122,6 +126,7 @@ pub(crate) fn tidy(points: Vec<Point>) -> Vec<Point> {
 }
 
 /// Adds the double lines, as wide as the links that meet at them.
+#[inline(never)]
 fn bars(s: &Shapes, p: &Places, placement: &mut Placement) {
     let graph = s.graph;
     for t in graph.steps as u32..graph.nodes as u32 {
@@ -139,6 +144,7 @@ fn bars(s: &Shapes, p: &Places, placement: &mut Placement) {
 }
 
 /// Adds the ends of broken links, with the boxes of their texts.
+#[inline(never)]
 fn connectors(s: &Shapes, p: &Places, placement: &mut Placement) {
     for &(l, leaving, tail, tip) in &p.broken {
         let (from, to) = s.graph.links[l as usize];

@@ -17,6 +17,7 @@ pub(crate) struct Named<'c> {
 }
 
 impl<'c> Named<'c> {
+    #[inline(never)]
     pub(crate) fn new(chart: &'c Chart) -> Named<'c> {
         let mut named = Named { steps: HashMap::new(), labels: HashMap::new() };
         for (n, s) in (0..).zip(chart.steps()) {

@@ -142,6 +142,7 @@ enum Above {
 }
 
 /// Computes the sizes of all parts; the first blocks are the roots.
+#[inline(never)]
 pub(crate) fn shapes<'a>(graph: &'a Graph, tree: &'a Tree, sizes: &'a Sizes) -> Shapes<'a> {
     let rooms = rooms(graph, tree, sizes);
     let mut waiting = vec![0; graph.nodes];
@@ -181,6 +182,7 @@ pub(crate) fn shapes<'a>(graph: &'a Graph, tree: &'a Tree, sizes: &'a Sizes) -> 
 
 impl Shapes<'_> {
     /// Makes a block of every sequence; outer sequences come before inner ones.
+    #[inline(never)]
     fn unfold(&mut self) {
         let tree = self.tree;
         self.add(tree.roots.iter().map(|c| Branch { chain: *c, first: None, last: None }).collect());
@@ -210,6 +212,7 @@ impl Shapes<'_> {
         }
     }
 
+    #[inline(never)]
     fn add(&mut self, branches: Vec<Branch>) -> Range<u32> {
         let from = self.blocks.len() as u32;
         self.blocks.extend(branches.into_iter().map(|branch| Block {
@@ -234,6 +237,7 @@ impl Shapes<'_> {
     }
 
     /// Computes the heights inside a sequence.
+    #[inline(never)]
     fn sequence(&mut self, b: usize) {
         let tree = self.tree;
         let items: Vec<Item> = tree.walk(self.blocks[b].branch.chain).collect();
@@ -279,6 +283,7 @@ impl Shapes<'_> {
     }
 
     /// Places one symbol: its anchor, the level below it, and what the next item finds there.
+    #[inline(never)]
     fn node(&mut self, n: u32, level: i32, above: Above, branches: bool) -> (i32, i32, Above) {
         let at = n as usize;
         let (room, step) = (self.rooms[at], self.graph.is_step(n));
@@ -310,6 +315,7 @@ impl Shapes<'_> {
     }
 
     /// Computes the size of a group of branches.
+    #[inline(never)]
     fn group(&mut self, p: usize) {
         let (top_open, end_open) = (self.tree.pars[p].top_open, self.tree.pars[p].end_open);
         let mut group = std::mem::take(&mut self.groups[p]);
@@ -363,6 +369,7 @@ impl Shapes<'_> {
     }
 
     /// Lowers the return at the end of a block, or the returns of the branches at its end, to `y`.
+    #[inline(never)]
     pub(crate) fn stretch(&mut self, b: usize, y: i32) {
         let Some(last) = self.blocks[b].puts.last().copied() else { return };
         match last.item {
@@ -383,6 +390,7 @@ impl Shapes<'_> {
     }
 
     /// Lowers the returns of the branches at the end of a block.
+    #[inline(never)]
     fn stretch_all(&mut self, b: usize, p: usize, by: i32) {
         let mut group = std::mem::take(&mut self.groups[p]);
         for inner in group.blocks.clone() {
@@ -469,6 +477,7 @@ pub(crate) struct Band {
 }
 
 /// Places branches beside one another and finds the spine among them.
+#[inline(never)]
 fn columns(group: &mut Group, of: &[Block], groups: &[Group]) {
     let Some(last) = of.last() else { return };
     let need: Vec<i32> = of.windows(2).map(|w| (w[0].right + GAP + w[1].left + 99) / 100 * 100).collect();

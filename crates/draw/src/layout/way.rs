@@ -56,6 +56,7 @@ impl Ways {
     }
 
     /// Calls `f` for each symbol that a segment crosses, except the two symbols in `ends`.
+    #[inline(never)]
     fn hits(&self, a: Point, b: Point, ends: Option<[u32; 2]>, mut f: impl FnMut(u32)) {
         let piece = line(a, b);
         let (xs, ys) = cells(&piece);
@@ -95,6 +96,7 @@ impl Ways {
 
     /// The corners of a line from `a`, which it leaves downward, to `b`, which it enters from
     /// above. `rows` are the heights at which other links part below `a` and meet above `b`.
+    #[inline(never)]
     pub(crate) fn find(&self, a: Point, b: Point, rows: [Option<i32>; 2], from: u32, to: u32) -> Vec<Point> {
         let ends = [from, to];
         let mut tried: Vec<Vec<Point>> = Vec::new();
@@ -145,6 +147,7 @@ impl Ways {
     }
 
     /// Columns beside the two ends, moved aside by the symbols that stand in them.
+    #[inline(never)]
     fn columns(&self, y0: i32, y1: i32, ends: [u32; 2]) -> Vec<i32> {
         let mut found = Vec::new();
         let boxes = ends.map(|n| self.boxes[n as usize].1);

@@ -22,6 +22,7 @@ pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Chart, new: &
 }
 
 /// The text of a new chart; its items may come from elsewhere in the text.
+#[inline(never)]
 pub(crate) fn fresh(sheet: &Sheet<'_>, draft: &Draft<'_>, chart: &Chart) -> String {
     let bare = Chart { items: Vec::new(), ..chart.clone() };
     let mut out = print_part(Part::Item(&g7_model::Item::Chart(bare)), None);
@@ -82,6 +83,7 @@ impl Style<ChartItem> for Items<'_, '_> {
         })
     }
 
+    #[inline(never)]
     fn fresh(&self, sheet: &Sheet<'_>, new: &ChartItem, indent: &str) -> String {
         if let Some(old) = self.origin(new) {
             let lead = self.lead(old, new);

@@ -25,6 +25,7 @@ impl Style<Item> for Items<'_, '_> {
         thing.at()
     }
 
+    #[inline(never)]
     fn edit(&self, sheet: &mut Sheet<'_>, old: &Item, new: &Item) {
         match (old, new) {
             (Item::Chart(a), Item::Chart(b)) => chart::edit(sheet, self.draft, a, b),

@@ -16,6 +16,7 @@ fn expr_text(e: &Expr, draft: &Draft<'_>) -> String {
 // Steps
 
 /// Changes a step in place.
+#[inline(never)]
 pub(crate) fn edit_step(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Step, new: &Step) {
     let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
     let (head, open) = sheet.header(start, end);
@@ -47,6 +48,7 @@ pub(crate) fn edit_step(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Step, ne
     edit_actions(sheet, draft, old, new, (head_end, open));
 }
 
+#[inline(never)]
 fn edit_actions(
     sheet: &mut Sheet<'_>,
     draft: &Draft<'_>,
@@ -126,6 +128,7 @@ struct Parts {
     clauses_end: usize,
 }
 
+#[inline(never)]
 fn parts(sheet: &Sheet<'_>, t: &Transition) -> Option<Parts> {
     let tokens = sheet.tokens(t.at.0.start as usize, t.at.0.end as usize);
     let arrow = tokens.iter().position(|x| x.kind == TokenKind::Arrow)?;
@@ -163,6 +166,7 @@ fn parts(sheet: &Sheet<'_>, t: &Transition) -> Option<Parts> {
 
 /// Changes a transition in place. If the transition leaves a chain, the caller writes the part
 /// before its arrow.
+#[inline(never)]
 pub(crate) fn edit_transition(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Transition, new: &Transition) {
     if old == new && !is_fresh(new.receptivity.at) {
         return;
@@ -207,6 +211,7 @@ fn clause(sheet: &mut Sheet<'_>, there: Option<(usize, usize)>, after: usize, te
 // Variables
 
 /// Changes the declaration of a variable.
+#[inline(never)]
 pub(crate) fn edit_variable(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &VarDecl, new: &VarDecl) {
     if old == new {
         return;

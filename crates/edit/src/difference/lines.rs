@@ -68,6 +68,7 @@ impl<'a> Sheet<'a> {
 
     /// The end of the notes and semicolons that follow on the same line; other text may follow
     /// them.
+    #[inline(never)]
     pub(crate) fn tail(&self, at: usize) -> usize {
         let mut at = at;
         let first = self.notes.partition_point(|n| (n.at.start as usize) < at);
@@ -112,6 +113,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// The tokens before the first `{`, and that `{`.
+    #[inline(never)]
     pub(crate) fn header(&self, start: usize, end: usize) -> (Vec<Token>, Option<Token>) {
         let mut head = Vec::new();
         for t in tokens(self.slice(start, end)) {
@@ -130,6 +132,7 @@ impl<'a> Sheet<'a> {
     }
 
     /// Removes a part, with its lines if nothing else stands on them.
+    #[inline(never)]
     pub(crate) fn remove(&mut self, start: usize, end: usize) {
         let tail = self.tail(end);
         if !self.begins_line(start) || !self.ends_line(tail) {
@@ -194,6 +197,7 @@ impl<'a> Sheet<'a> {
 }
 
 /// Changes the indentation of all lines of a text; the first line has none.
+#[inline(never)]
 pub(crate) fn reindent(text: &str, from: &str, to: &str, newline: &str) -> String {
     let mut out = String::with_capacity(text.len() + 16);
     for (k, line) in text.lines().enumerate() {

@@ -45,6 +45,7 @@ pub(crate) struct Block<'a> {
 }
 
 /// Changes a list.
+#[inline(never)]
 pub(crate) fn list<T>(sheet: &mut Sheet<'_>, old: &[T], new: &[T], block: &Block<'_>, style: &impl Style<T>) {
     let mut work = Work::new(sheet, old, new, block, style);
     work.at_start();
@@ -72,6 +73,7 @@ struct Work<'w, 's, 't, T, S> {
 }
 
 impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
+    #[inline(never)]
     fn new(sheet: &'w mut Sheet<'s>, old: &'t [T], new: &'t [T], block: &'w Block<'w>, style: &'w S) -> Self {
         let places: HashMap<u32, usize> =
             old.iter().enumerate().map(|(k, t)| (style.at(t).start, k)).collect();
@@ -113,6 +115,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
     }
 
     /// Lines for new elements, written after another element.
+    #[inline(never)]
     fn lines(&self, things: &[&'t T], after: Option<&'t T>) -> String {
         let mut out = String::new();
         let mut before = after;
@@ -129,6 +132,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         out
     }
 
+    #[inline(never)]
     fn at_start(&mut self) {
         let things = self.came.first().cloned().unwrap_or_default();
         let Some(last) = things.last() else { return };
@@ -160,6 +164,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
     }
 
     /// Writes into braces that contain nothing or only notes.
+    #[inline(never)]
     fn fill_empty(&mut self, open: usize, lines: &str, outer: &str) {
         let (close, nl) = (self.block.close, self.sheet.newline);
         let inside = self.sheet.slice(open, close);
@@ -174,6 +179,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
     }
 
     /// Changes the elements `a..=b`, which share a line.
+    #[inline(never)]
     fn island(&mut self, a: usize, b: usize) {
         if (a..=b).all(|k| self.kept(k).is_none()) {
             return self.sheet.remove(self.span(a).0, self.span(b).1);
@@ -202,6 +208,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
     }
 
     /// Writes the elements added after the last element of an island.
+    #[inline(never)]
     fn below(&mut self, b: usize) {
         let things = self.new_after(b).to_vec();
         let (Some(last), Some((_, anchor))) = (things.last(), self.kept(b)) else { return };
@@ -225,6 +232,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
         self.sheet.insert_below(end, &lines, self.block.outer);
     }
 
+    #[inline(never)]
     fn laid_anew(&mut self, a: usize, b: usize) {
         let nl = self.sheet.newline;
         let mut out = String::new();
@@ -275,6 +283,7 @@ impl<'w, 's, 't, T, S: Style<T>> Work<'w, 's, 't, T, S> {
 }
 
 /// The text of an element with its fields changed.
+#[inline(never)]
 pub(crate) fn changed<T>(sheet: &Sheet<'_>, style: &impl Style<T>, old: &T, new: &T) -> String {
     let mut sub = sheet.blank();
     style.edit(&mut sub, old, new);

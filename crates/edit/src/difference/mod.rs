@@ -11,7 +11,7 @@ mod list;
 
 use std::collections::{BTreeMap, HashMap};
 
-use g7_model::{Chart, ChartItem, Document, Item, Name, Placed, Transition};
+use g7_model::{Chart, ChartItem, Document, Item, Name, PlaceAt, Placed, Transition};
 
 use crate::draft::{Draft, is_fresh};
 use crate::splice::{Splice, tidied};
@@ -42,6 +42,7 @@ pub(crate) fn settle(draft: &mut Draft<'_>) {
 }
 
 /// For each chained transition, the place of the transition that it continues.
+#[inline(never)]
 fn predecessors(doc: &Document) -> HashMap<u32, u32> {
     let mut before = HashMap::new();
     for chart in doc.charts() {
@@ -56,6 +57,7 @@ fn predecessors(doc: &Document) -> HashMap<u32, u32> {
     before
 }
 
+#[inline(never)]
 fn unchain(chart: &mut Chart, before: &HashMap<u32, u32>) {
     let mut last: Option<(Vec<Name>, u32, bool)> = None;
     for item in &mut chart.items {
@@ -74,42 +76,50 @@ fn unchain(chart: &mut Chart, before: &HashMap<u32, u32>) {
 }
 
 /// Deletes the places of deleted parts and renumbers transitions.
+#[inline(never)]
 fn settle_layouts(draft: &mut Draft<'_>) {
-    let old = draft.source.document;
-    let charts: Vec<Chart> = draft.doc.charts().cloned().collect();
-    for item in &mut draft.doc.items {
-        let Item::Layout(layout) = item else { continue };
-        if is_fresh(layout.at) {
-            continue;
+    let settled: Vec<Option<Vec<PlaceAt>>> =
+        draft.doc.items.iter().map(|item| settled(draft, item)).collect();
+    for (item, places) in draft.doc.items.iter_mut().zip(settled) {
+        if let (Item::Layout(layout), Some(places)) = (item, places) {
+            layout.places = places;
         }
-        let now = charts.iter().find(|c| c.name.text == layout.chart.text);
-        let then = old.charts().find(|c| c.name.text == layout.chart.text);
-        let (Some(now), Some(then)) = (now, then) else { continue };
-        let numbers: BTreeMap<(u32, u32), usize> =
-            now.transitions().enumerate().map(|(n, t)| (key(t), n)).collect();
-        let number = |t: Option<&Transition>| t.and_then(|t| numbers.get(&key(t)).copied());
-        layout.places.retain_mut(|p| match &mut p.what {
-            Placed::Step(name) => {
-                now.steps().any(|s| s.name == *name) || !then.steps().any(|s| s.name == *name)
-            }
-            Placed::TransitionNumber(n) if !is_fresh(p.at) => {
-                let t = then.transitions().nth(*n as usize);
-                match (t, number(t)) {
-                    (None, _) => true,
-                    (Some(_), None) => false,
-                    (Some(_), Some(k)) => {
-                        *n = u32::try_from(k).unwrap_or(u32::MAX);
-                        true
-                    }
+    }
+}
+
+/// The places that a layout has after a gesture; `None` for what stays as it is.
+#[inline(never)]
+fn settled(draft: &Draft<'_>, item: &Item) -> Option<Vec<PlaceAt>> {
+    let Item::Layout(layout) = item else { return None };
+    if is_fresh(layout.at) {
+        return None;
+    }
+    let now = draft.doc.charts().find(|c| c.name.text == layout.chart.text)?;
+    let then = draft.source.document.charts().find(|c| c.name.text == layout.chart.text)?;
+    let numbers: BTreeMap<(u32, u32), usize> =
+        now.transitions().enumerate().map(|(n, t)| (key(t), n)).collect();
+    let number = |t: Option<&Transition>| t.and_then(|t| numbers.get(&key(t)).copied());
+    let mut places = layout.places.clone();
+    places.retain_mut(|p| match &mut p.what {
+        Placed::Step(name) => now.steps().any(|s| s.name == *name) || !then.steps().any(|s| s.name == *name),
+        Placed::TransitionNumber(n) if !is_fresh(p.at) => {
+            let t = then.transitions().nth(*n as usize);
+            match (t, number(t)) {
+                (None, _) => true,
+                (Some(_), None) => false,
+                (Some(_), Some(k)) => {
+                    *n = u32::try_from(k).unwrap_or(u32::MAX);
+                    true
                 }
             }
-            Placed::Transition(label) => {
-                let has = |c: &Chart| c.transitions().any(|t| t.label.as_ref() == Some(label));
-                has(now) || !has(then)
-            }
-            Placed::TransitionNumber(_) | Placed::Comment(_) => true,
-        });
-    }
+        }
+        Placed::Transition(label) => {
+            let has = |c: &Chart| c.transitions().any(|t| t.label.as_ref() == Some(label));
+            has(now) || !has(then)
+        }
+        Placed::TransitionNumber(_) | Placed::Comment(_) => true,
+    });
+    Some(places)
 }
 
 fn key(t: &Transition) -> (u32, u32) {

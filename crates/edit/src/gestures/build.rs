@@ -12,6 +12,7 @@ use crate::id::ItemId;
 
 /// Adds a step without links. The first step of a chart is initial; the first step of an expansion
 /// or task is its entry step.
+#[inline(never)]
 pub(crate) fn add_step(
     d: &mut Draft<'_>,
     chart: &str,
@@ -58,6 +59,7 @@ pub(crate) fn fresh_step(d: &mut Draft<'_>, chart: &str, behind: Option<&str>) -
 }
 
 /// Adds a transition and a step after a step.
+#[inline(never)]
 fn onward(d: &mut Draft<'_>, chart: &str, from: &str) -> Result<(), Refusal> {
     may_leave(d.step(chart, from)?)?;
     let name = d.step_name(d.chart(chart)?);
@@ -71,6 +73,7 @@ fn onward(d: &mut Draft<'_>, chart: &str, from: &str) -> Result<(), Refusal> {
     Ok(())
 }
 
+#[inline(never)]
 pub(crate) fn next(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
     match node(d, id)? {
         Node::Step(step) => onward(d, &id.chart, &step),
@@ -101,6 +104,7 @@ fn near(d: &Draft<'_>, chart: &str, at: Span) -> Result<Option<String>, Refusal>
     Ok(t.to.last().or(t.from.last()).map(|n| n.text.to_string()))
 }
 
+#[inline(never)]
 pub(crate) fn before(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
     let chart = id.chart.as_str();
     match node(d, id)? {
@@ -135,6 +139,7 @@ pub(crate) fn before(d: &mut Draft<'_>, id: &ItemId) -> Result<(), Refusal> {
 }
 
 /// Adds a branch: a selection begins after a step, simultaneous sequences begin after a transition.
+#[inline(never)]
 pub(crate) fn branch(d: &mut Draft<'_>, id: &ItemId, how: Branching) -> Result<(), Refusal> {
     let chart = id.chart.as_str();
     match (node(d, id)?, how) {

@@ -34,6 +34,7 @@ pub(crate) struct Chosen {
 
 impl Chosen {
     /// The steps (in the order of the text) and transitions that the ids name.
+    #[inline(never)]
     pub(crate) fn new(d: &Draft<'_>, ids: &[ItemId]) -> Result<Chosen, Refusal> {
         let chart = one_chart(ids)?.to_owned();
         let (mut names, mut transitions) = (BTreeSet::new(), BTreeSet::new());
@@ -61,6 +62,7 @@ impl Chosen {
     }
 }
 
+#[inline(never)]
 pub(crate) fn delete(d: &mut Draft<'_>, ids: &[ItemId], heal: bool) -> Result<(), Refusal> {
     if ids.is_empty() {
         return refuse(say!("nothing is chosen"));
@@ -121,6 +123,7 @@ fn link(d: &Draft<'_>, chart: &str, a: &End, b: &End) -> Result<(String, String,
 }
 
 /// Removes the chosen parts from the chart, and the transitions that cannot exist without them.
+#[inline(never)]
 fn take_away(chart: &mut Chart, chosen: &Chosen, extra: &BTreeSet<Span>) {
     chart.items.retain_mut(|item| match item {
         ChartItem::Step(s) => !chosen.has_step(&s.name.text),
@@ -155,6 +158,7 @@ fn heal_all(chart: &mut Chart, chosen: &mut Chosen) -> BTreeSet<Span> {
     extra
 }
 
+#[inline(never)]
 fn regions(chart: &Chart, chosen: &Chosen) -> Vec<Region> {
     let mut left: BTreeSet<String> = chosen.steps.iter().cloned().collect();
     let mut loose: BTreeSet<Span> = chosen.transitions.clone();
@@ -197,6 +201,7 @@ struct Around {
     s_behind: Vec<Name>,
 }
 
+#[inline(never)]
 fn around(chart: &Chart, region: &Region) -> Around {
     let inside = |n: &Name| region.steps.contains(&*n.text);
     let mut a = Around { t_before: vec![], t_behind: vec![], s_before: vec![], s_behind: vec![] };
@@ -231,6 +236,7 @@ fn around(chart: &Chart, region: &Region) -> Around {
 }
 
 /// Bridges a region; returns a chosen transition that must be kept, if there is one.
+#[inline(never)]
 fn heal(chart: &mut Chart, region: &Region, extra: &mut BTreeSet<Span>) -> Option<Span> {
     let a = around(chart, region);
     let inside = |n: &Name| region.steps.contains(&*n.text);
@@ -275,6 +281,7 @@ fn each(chart: &mut Chart, list: &[Transition], change: impl Fn(&mut Transition)
 }
 
 /// Makes the transition after the preceding step lead to the succeeding step.
+#[inline(never)]
 fn join_steps(chart: &mut Chart, region: &Region, before: &Name, behind: &Name) -> Option<Span> {
     let mut firsts = chart.items.iter_mut().filter_map(|i| match i {
         ChartItem::Transition(t) if region.transitions.contains(&t.at.0) && has(&t.from, &before.text) => {

@@ -26,6 +26,7 @@ fn step(d: &Draft<'_>, id: &ItemId) -> Result<String, Refusal> {
     }
 }
 
+#[inline(never)]
 pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
     let at = transition(d, id)?;
     let typed = text.trim();
@@ -41,6 +42,7 @@ pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<
 }
 
 /// Reads the actions in a text; each keeps the text that was typed.
+#[inline(never)]
 pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>, Refusal> {
     const HEAD: &str = "chart A {\nstep 1 {\n";
     let whole = format!("{HEAD}{text}\n}}\n}}\n");
@@ -64,6 +66,7 @@ pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>,
     Ok(actions)
 }
 
+#[inline(never)]
 pub(crate) fn action(
     d: &mut Draft<'_>,
     id: &ItemId,
@@ -113,6 +116,7 @@ pub(crate) fn remove_action(d: &mut Draft<'_>, chart: &str, name: &str, k: usize
     Ok(())
 }
 
+#[inline(never)]
 pub(crate) fn comment(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
     let comment = Some(text.trim()).filter(|t| !t.is_empty()).map(Box::from);
     if let Part::Note(n) = id.part {
@@ -130,6 +134,7 @@ pub(crate) fn comment(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), 
     Ok(())
 }
 
+#[inline(never)]
 pub(crate) fn label(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<(), Refusal> {
     let at = transition(d, id)?;
     let text = text.trim();
@@ -156,6 +161,7 @@ pub(crate) fn priority(d: &mut Draft<'_>, id: &ItemId, n: Option<u32>) -> Result
 }
 
 /// Changes the preceding or succeeding steps of a transition.
+#[inline(never)]
 pub(crate) fn ends(
     d: &mut Draft<'_>,
     id: &ItemId,
@@ -198,6 +204,7 @@ pub(crate) fn initial(d: &mut Draft<'_>, id: &ItemId, on: bool) -> Result<(), Re
     Ok(())
 }
 
+#[inline(never)]
 pub(crate) fn kind(d: &mut Draft<'_>, id: &ItemId, sort: Sort) -> Result<(), Refusal> {
     let name = step(d, id)?;
     let now = d.step(&id.chart, &name)?.kind.clone();
@@ -218,6 +225,7 @@ pub(crate) fn kind(d: &mut Draft<'_>, id: &ItemId, sort: Sort) -> Result<(), Ref
 
 /// Checks that a chart may have this entry or exit step: only expansions and tasks have them, one
 /// of each.
+#[inline(never)]
 fn end(d: &Draft<'_>, chart: &str, name: &str, sort: Sort) -> Result<StepKind, Refusal> {
     let home = d.chart(chart)?;
     let entry = sort == Sort::Entry;

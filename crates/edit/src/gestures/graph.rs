@@ -48,6 +48,7 @@ pub(crate) fn may_arrive(step: &Step) -> Result<(), Refusal> {
 }
 
 /// Adds a step to the preceding (or succeeding) steps of a transition, unless it is among them.
+#[inline(never)]
 pub(crate) fn add(d: &mut Draft<'_>, chart: &str, at: Span, step: &str, to: bool) -> Result<(), Refusal> {
     let name = d.new_name(step);
     let t = d.transition_mut(chart, at)?;
@@ -90,6 +91,7 @@ fn item_of_step(chart: &Chart, step: &str) -> Option<usize> {
 }
 
 /// Writes a new step after another step, or after the last one.
+#[inline(never)]
 pub(crate) fn put_step(
     d: &mut Draft<'_>,
     chart: &str,
@@ -133,6 +135,7 @@ pub(crate) fn put_step_before(
 
 /// Writes a new transition after those that leave a step, otherwise after those that lead to it,
 /// otherwise at the end.
+#[inline(never)]
 pub(crate) fn put_transition(
     d: &mut Draft<'_>,
     chart: &str,
@@ -162,6 +165,7 @@ pub(crate) fn put_transition(
 
 /// Writes a new transition directly before or after another, so that the branches of a selection
 /// keep their order.
+#[inline(never)]
 pub(crate) fn put_beside(
     d: &mut Draft<'_>,
     chart: &str,

@@ -30,6 +30,7 @@ struct Sequence {
     exit: bool,
 }
 
+#[inline(never)]
 pub(crate) fn into_macro(d: &mut Draft<'_>, ids: &[ItemId]) -> Result<(), Refusal> {
     let chosen = Chosen::new(d, ids)?;
     let chart = chosen.chart.clone();
@@ -51,6 +52,7 @@ pub(crate) fn into_macro(d: &mut Draft<'_>, ids: &[ItemId]) -> Result<(), Refusa
     Ok(())
 }
 
+#[inline(never)]
 fn sequence(home: &Chart, chosen: &Chosen) -> Result<Sequence, Refusal> {
     let inside = |n: &Name| chosen.has_step(&n.text);
     let steps: Vec<Step> = home.steps().filter(|s| inside(&s.name)).cloned().collect();
@@ -104,6 +106,7 @@ fn end_name(sequence: &Sequence, base: &str) -> String {
 }
 
 /// The text of the expansion, made from the lines that move.
+#[inline(never)]
 fn expansion_text(
     d: &mut Draft<'_>,
     home: &Chart,
@@ -152,6 +155,7 @@ fn expansion_text(
 }
 
 /// The text of a part that moves, with its names adapted.
+#[inline(never)]
 fn moved_text(d: &Draft<'_>, at: Span, splices: Vec<Splice>) -> Result<String, Refusal> {
     let (start, end) = (at.start as usize, at.end as usize);
     let mut own: Vec<Splice> = splices
@@ -169,6 +173,7 @@ fn moved_text(d: &Draft<'_>, at: Span, splices: Vec<Splice>) -> Result<String, R
 
 /// Names that must be written differently: returns the changes inside the moved parts, and adds the
 /// others to `d.besides`.
+#[inline(never)]
 fn names(d: &mut Draft<'_>, home: &Chart, sequence: &Sequence, moved: &[Span], name: &str) -> Vec<Splice> {
     let refs = references(d.source.document);
     let within = |at: Span| moved.iter().any(|m| m.start <= at.start && at.end <= m.end);
@@ -198,6 +203,7 @@ fn names(d: &mut Draft<'_>, home: &Chart, sequence: &Sequence, moved: &[Span], n
 }
 
 /// Replaces the sequence by the macro-step.
+#[inline(never)]
 fn swap(
     d: &mut Draft<'_>,
     chart: &str,

@@ -12,6 +12,7 @@ use crate::gesture::What;
 use crate::id::{End, ItemId, Part};
 
 /// Inserts a step and a transition into a link.
+#[inline(never)]
 pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(), Refusal> {
     let chart = link.chart.as_str();
     let (from, to) = match &link.part {
@@ -49,6 +50,7 @@ pub(crate) fn insert(d: &mut Draft<'_>, link: &ItemId, what: What) -> Result<(),
 }
 
 /// The step and the transition of a link; the flag is true if the step comes first.
+#[inline(never)]
 fn ends(d: &Draft<'_>, chart: &str, from: &End, to: &End) -> Result<(String, Span, bool), Refusal> {
     let (step, number, leaving) = match (from, to) {
         (End::Step(s), End::Transition(t)) => (s, *t, true),
@@ -74,6 +76,7 @@ pub(crate) fn macro_name(d: &Draft<'_>, chart: &str, name: &str) -> Result<Strin
 
 /// Adds a step beside a sequence: the transition before the sequence activates it too, and the
 /// transition after the sequence waits for it too.
+#[inline(never)]
 pub(crate) fn parallel(d: &mut Draft<'_>, ids: &[ItemId]) -> Result<(), Refusal> {
     let chosen = Chosen::new(d, ids)?;
     let chart = chosen.chart.clone();

@@ -11,6 +11,7 @@ use crate::draft::Draft;
 use crate::gesture::Branching;
 use crate::id::ItemId;
 
+#[inline(never)]
 pub(crate) fn connect(d: &mut Draft<'_>, from: &ItemId, to: &ItemId) -> Result<(), Refusal> {
     if from.chart != to.chart {
         return refuse(say!(
@@ -47,6 +48,7 @@ pub(crate) fn connect(d: &mut Draft<'_>, from: &ItemId, to: &ItemId) -> Result<(
 }
 
 /// Adds a transition from some steps to a step.
+#[inline(never)]
 fn link_steps(d: &mut Draft<'_>, chart: &str, from: &[&str], to: &str) -> Result<(), Refusal> {
     for step in from {
         may_leave(d.step(chart, step)?)?;
@@ -62,6 +64,7 @@ fn link_steps(d: &mut Draft<'_>, chart: &str, from: &[&str], to: &str) -> Result
 
 /// Adds a link to a step. A transition that leads to exactly one other step leads to this one
 /// instead.
+#[inline(never)]
 pub(crate) fn jump(d: &mut Draft<'_>, id: &ItemId, to: &ItemId) -> Result<(), Refusal> {
     if id.chart != to.chart {
         return refuse(say!("a jump stays within its chart"));
@@ -91,6 +94,7 @@ pub(crate) fn jump(d: &mut Draft<'_>, id: &ItemId, to: &ItemId) -> Result<(), Re
 
 /// Makes branches converge at a step: each by a transition of its own (or), or all by one
 /// transition (and).
+#[inline(never)]
 pub(crate) fn converge(
     d: &mut Draft<'_>,
     ids: &[ItemId],
@@ -123,6 +127,7 @@ pub(crate) fn converge(
 
 /// The step at which the branches converge: the given one, or a new one, written after the last of
 /// the branches' steps.
+#[inline(never)]
 fn target(d: &mut Draft<'_>, chart: &str, steps: &[String], to: Option<&ItemId>) -> Result<String, Refusal> {
     let Some(to) = to else {
         let place = |c: &Chart, s: &String| c.steps().position(|x| *x.name.text == **s);
@@ -139,6 +144,7 @@ fn target(d: &mut Draft<'_>, chart: &str, steps: &[String], to: Option<&ItemId>)
     }
 }
 
+#[inline(never)]
 fn alternatives(
     d: &mut Draft<'_>,
     chart: &str,
@@ -170,6 +176,7 @@ fn alternatives(
     Ok(())
 }
 
+#[inline(never)]
 fn simultaneous(
     d: &mut Draft<'_>,
     chart: &str,

@@ -27,6 +27,7 @@ use crate::draft::Draft;
 use crate::gesture::Gesture;
 
 /// Changes the draft; renaming and typing are handled elsewhere.
+#[inline(never)]
 pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refusal> {
     match gesture {
         Gesture::AddStep { chart, at, kind } => build::add_step(d, chart, *at, *kind),

@@ -18,6 +18,7 @@ pub(crate) enum Node {
 
 /// The step (also for an id of one of its actions) or the transition that an id names, if it
 /// exists.
+#[inline(never)]
 pub(crate) fn node(d: &Draft<'_>, id: &ItemId) -> Result<Node, Refusal> {
     match &id.part {
         Part::Step(name) => {

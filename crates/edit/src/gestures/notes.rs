@@ -54,6 +54,7 @@ pub(crate) fn at(d: &Draft<'_>, chart: &str, n: usize) -> Result<(i32, i32), Ref
 }
 
 /// Deletes comments; an empty layout section is deleted too.
+#[inline(never)]
 pub(crate) fn delete(d: &mut Draft<'_>, chart: &str, gone: &BTreeSet<usize>) -> Result<(), Refusal> {
     let count = layout_section::layout(&d.doc, chart).map_or(0, |l| comments(l).count());
     if gone.last().is_some_and(|n| *n >= count) {

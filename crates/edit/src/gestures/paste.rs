@@ -24,6 +24,7 @@ use g7_syntax::{Part, print_part};
 /// Greatest length of a pasted text, in bytes.
 const MOST: usize = 1 << 20;
 
+#[inline(never)]
 pub(crate) fn paste(d: &mut Draft<'_>, chart: &str, text: &str, at: Option<[f64; 2]>) -> Result<(), Refusal> {
     d.chart(chart)?;
     let (text, doc) = fragment(text)?;
@@ -67,6 +68,7 @@ const BESIDE: i32 = 200;
 
 impl Pasted {
     /// Places all parts at `at`, arranged as on the drawing from which they were copied.
+    #[inline(never)]
     fn put(
         &self,
         d: &mut Draft<'_>,
@@ -115,6 +117,7 @@ impl Pasted {
 
 /// Declares the names that the pasted text needs and the file does not have. Existing declarations
 /// stay; the user is told if they differ.
+#[inline(never)]
 fn declare(d: &mut Draft<'_>, chart: &str, doc: &Document) -> Result<(), Refusal> {
     let places: Vec<Span> = doc.charts().map(|c| c.at.0).collect();
     let first = doc.charts().next().map(|c| c.name.text.to_string());
@@ -154,6 +157,7 @@ enum Meaning {
     Other(Said),
 }
 
+#[inline(never)]
 fn meaning(d: &Draft<'_>, chart: &str, name: &str) -> Option<Meaning> {
     let home = d.chart(chart).ok()?;
     let own = home.vars().find(|v| declares(v, name));
@@ -187,6 +191,7 @@ fn sort(v: &VarDecl) -> String {
 }
 
 /// Reads the text to paste: a small file, or only the lines of a chart.
+#[inline(never)]
 fn fragment(text: &str) -> Result<(String, Document), Refusal> {
     if text.len() > MOST {
         return refuse(say!("this is too long to be pasted into a chart"));
@@ -204,6 +209,7 @@ fn fragment(text: &str) -> Result<(String, Document), Refusal> {
 }
 
 /// The text with new names for steps, labels and expansions whose names already exist.
+#[inline(never)]
 fn without_clashes(
     d: &Draft<'_>,
     chart: &str,
@@ -246,6 +252,7 @@ fn without_clashes(
 }
 
 /// New names for those that already exist: the next number, or the name with a number appended.
+#[inline(never)]
 fn fresh_names(there: &BTreeSet<String>, brought: &BTreeSet<String>) -> Vec<(String, String)> {
     let mut taken: BTreeSet<String> = there.union(brought).cloned().collect();
     let number = |n: &String| n.trim_start_matches('M').parse::<u64>().ok().filter(|n| *n < u64::MAX / 2);
@@ -280,6 +287,7 @@ fn lines(text: &str, at: Span) -> String {
     reindent(slice(text, at), line.get(..indent).unwrap_or_default(), "", "\n")
 }
 
+#[inline(never)]
 fn paste_step(d: &mut Draft<'_>, chart: &str, text: &str, step: &Step) -> Result<(), Refusal> {
     let home = d.chart(chart)?.kind;
     let mut new = step.clone();
@@ -300,6 +308,7 @@ fn paste_step(d: &mut Draft<'_>, chart: &str, text: &str, step: &Step) -> Result
     Ok(())
 }
 
+#[inline(never)]
 fn paste_transition(d: &mut Draft<'_>, chart: &str, text: &str, t: &Transition) -> Result<Span, Refusal> {
     let mut new = t.clone();
     let lead = if t.chained { print_part(Part::Steps(&t.from), None) + " " } else { String::new() };

@@ -13,6 +13,7 @@ use crate::gesture::Alignment;
 use crate::id::{ItemId, Part};
 
 /// Gives a step, transition or comment a place.
+#[inline(never)]
 pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Result<(), Refusal> {
     if let Part::Note(n) = id.part {
         return notes::shift(d, &id.chart, n, (x, y));
@@ -39,6 +40,7 @@ fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
 }
 
 /// Renames the transition in the layout section when its label changes.
+#[inline(never)]
 pub(crate) fn relabel(
     d: &mut Draft<'_>,
     chart: &str,
@@ -66,6 +68,7 @@ pub(crate) fn relabel(
 }
 
 /// The place of a symbol: as it is drawn if that is known, otherwise as the layout section says.
+#[inline(never)]
 fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
     if let Part::Note(n) = id.part {
         return notes::at(d, &id.chart, n);
@@ -93,6 +96,7 @@ fn anchor(d: &Draft<'_>, id: &ItemId) -> Result<(i32, i32), Refusal> {
 }
 
 /// The places of the steps, transitions and comments among the ids; an action counts as its step.
+#[inline(never)]
 fn anchors(d: &Draft<'_>, ids: &[ItemId]) -> Result<BTreeMap<ItemId, (i32, i32)>, Refusal> {
     let mut found = BTreeMap::new();
     for id in ids {
@@ -133,6 +137,7 @@ fn bounded(n: i64) -> Result<i32, Refusal> {
     i32::try_from(n).or_else(|_| refuse(say!("this place is too far away")))
 }
 
+#[inline(never)]
 pub(crate) fn align(d: &mut Draft<'_>, ids: &[ItemId], how: Alignment) -> Result<(), Refusal> {
     one_chart(ids)?;
     let mut places = anchors(d, ids)?;
@@ -157,6 +162,7 @@ pub(crate) fn align(d: &mut Draft<'_>, ids: &[ItemId], how: Alignment) -> Result
 }
 
 /// Distributes symbols at equal distances between the first and the last.
+#[inline(never)]
 fn distribute(
     places: &mut BTreeMap<ItemId, (i32, i32)>,
     part: impl Fn(&mut (i32, i32)) -> &mut i32,
@@ -175,6 +181,7 @@ fn distribute(
 }
 
 /// Deletes the places of symbols; comments keep theirs.
+#[inline(never)]
 pub(crate) fn tidy(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
     d.chart(chart)?;
     for item in &mut d.doc.items {

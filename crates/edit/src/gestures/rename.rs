@@ -18,6 +18,7 @@ use crate::splice::{Splice, tidied};
 use super::unread::unread;
 
 /// Renames a part everywhere.
+#[inline(never)]
 pub(crate) fn rename(
     source: &Source<'_>,
     id: Option<&ItemId>,
@@ -47,6 +48,7 @@ pub(crate) fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit
     }
 }
 
+#[inline(never)]
 fn everywhere(
     source: &Source<'_>,
     refs: &References,
@@ -72,6 +74,7 @@ fn everywhere(
 }
 
 /// Refuses if a place that could not be read may hold the name.
+#[inline(never)]
 fn whole(
     source: &Source<'_>,
     refs: &References,
@@ -93,6 +96,7 @@ fn whole(
 }
 
 /// The part to be renamed, under its old and its new name.
+#[inline(never)]
 fn defined(
     source: &Source<'_>,
     refs: &References,
@@ -135,6 +139,7 @@ fn defined(
 
 /// The variable with the name that the table shows (`Chart.name` for one of a chart); otherwise any
 /// other part with that name.
+#[inline(never)]
 fn by_name(source: &Source<'_>, refs: &References, name: &str) -> Definition {
     let split = source.document.charts().find_map(|c| {
         let rest = name.strip_prefix(&*c.name.text)?.strip_prefix('.')?;
@@ -160,6 +165,7 @@ fn by_name(source: &Source<'_>, refs: &References, name: &str) -> Definition {
     candidates.into_iter().find(|c| refs.declaration(c).is_some()).unwrap_or(first)
 }
 
+#[inline(never)]
 fn renamed(definition: &Definition, to: &str) -> Definition {
     let to = to.to_owned();
     match definition.clone() {
@@ -176,6 +182,7 @@ fn renamed(definition: &Definition, to: &str) -> Definition {
 }
 
 /// A thing of this kind has the name already.
+#[inline(never)]
 fn there_already(definition: &Definition, to: &str) -> Said {
     match definition {
         Definition::Chart(_) => say!("there is a chart `{to}` already"),
@@ -191,6 +198,7 @@ fn there_already(definition: &Definition, to: &str) -> Said {
 }
 
 /// Nothing of this kind has the name.
+#[inline(never)]
 fn none_such(definition: &Definition) -> Said {
     match definition {
         Definition::Chart(_) => say!("there is no chart with this name"),
@@ -206,6 +214,7 @@ fn none_such(definition: &Definition) -> Said {
 }
 
 /// True if a part of another kind in the same name space has the name.
+#[inline(never)]
 fn taken(source: &Source<'_>, new: &Definition) -> bool {
     let (chart, name) = match new {
         Definition::Variable { chart, name }
@@ -239,6 +248,7 @@ fn taken(source: &Source<'_>, new: &Definition) -> bool {
 }
 
 /// One use of the part, written with the new name.
+#[inline(never)]
 pub(crate) fn written(text: &str, found: &Use, to: &str) -> Result<Splice, Refusal> {
     let (start, end) = (found.at.start as usize, found.at.end as usize);
     let old = text.get(start..end).unwrap_or_default();
@@ -256,6 +266,7 @@ pub(crate) fn written(text: &str, found: &Use, to: &str) -> Result<Splice, Refus
 }
 
 /// Writes `%X12`, `%XM3` or `%X3.12` with another number.
+#[inline(never)]
 fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
     let Definition::Step { name, .. } = &found.definition else { return Ok(old.to_owned()) };
     let number = to.strip_prefix('M').filter(|_| name.starts_with('M')).unwrap_or(to);
@@ -285,6 +296,7 @@ fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
 }
 
 /// Checks that after the change every name refers to the same part as before.
+#[inline(never)]
 fn judge(
     source: &Source<'_>,
     before: &References,
@@ -309,6 +321,7 @@ fn judge(
 }
 
 /// The definition of a part under the new name of the chart or plant that contains it.
+#[inline(never)]
 fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
     let mut d = d.clone();
     match (old, new, &mut d) {

@@ -35,6 +35,7 @@ pub(crate) fn bound(d: &mut Draft<'_>, passes: Option<u32>) -> Result<(), Refusa
 }
 
 /// Replaces the switches that exclude each other by a new one.
+#[inline(never)]
 fn change(d: &mut Draft<'_>, instead: impl Fn(&Switch) -> bool, new: Option<Switch>) {
     let there = |i: &Item| matches!(i, Item::Profile(p) if p.switches.iter().any(|(s, _)| instead(s)));
     if new.is_none() && !d.doc.items.iter().any(there) {
@@ -50,6 +51,7 @@ fn change(d: &mut Draft<'_>, instead: impl Fn(&Switch) -> bool, new: Option<Swit
 }
 
 /// Changes the profile of the file; if the file names none, the default profile is written.
+#[inline(never)]
 fn profile_mut(d: &mut Draft<'_>, change: impl FnOnce(&mut Profile, Place)) {
     let at = d.fresh();
     if !d.doc.items.iter().any(|i| matches!(i, Item::Profile(_))) {
@@ -65,6 +67,7 @@ fn profile_mut(d: &mut Draft<'_>, change: impl FnOnce(&mut Profile, Place)) {
     }
 }
 
+#[inline(never)]
 pub(crate) fn scan(d: &mut Draft<'_>, ms: f64) -> Result<(), Refusal> {
     if !(ms.is_finite() && ms > 0.0 && ms <= 3_600_000.0) {
         return refuse(say!("a scan takes more than no time, and at most an hour"));

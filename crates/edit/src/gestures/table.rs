@@ -44,6 +44,7 @@ fn with_ends(d: &mut Draft<'_>, kind: ChartKind, name: &str) {
     put_chart(d, chart);
 }
 
+#[inline(never)]
 pub(crate) fn add_chart(d: &mut Draft<'_>, kind: ChartSort, name: Option<&str>) -> Result<(), Refusal> {
     let base = match kind {
         ChartSort::Chart => "Chart",
@@ -75,6 +76,7 @@ pub(crate) fn add_chart(d: &mut Draft<'_>, kind: ChartSort, name: Option<&str>) 
     Ok(())
 }
 
+#[inline(never)]
 pub(crate) fn delete_chart(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
     d.chart(chart)?;
     let mut first = true;
@@ -123,6 +125,7 @@ fn forget(v: &mut VarDecl, name: &str) -> bool {
     !v.names.is_empty()
 }
 
+#[inline(never)]
 pub(crate) fn delete_variable(d: &mut Draft<'_>, name: &str) -> Result<(), Refusal> {
     let (chart, name) = split(d, name);
     if !declarations(d, chart)?.iter().any(|v| declares(v, name)) {
@@ -153,6 +156,7 @@ pub(crate) fn renamed_row(source: &Source<'_>, name: &str, row: &Row) -> Option<
     (own != to).then(|| Gesture::Variable { name: Some(format!("{chart}{to}")), row: row.clone() })
 }
 
+#[inline(never)]
 pub(crate) fn variable(d: &mut Draft<'_>, name: Option<&str>, row: &Row) -> Result<(), Refusal> {
     let mut new = declared(d, row)?;
     let (home, old) = match name {
@@ -185,6 +189,7 @@ pub(crate) fn variable(d: &mut Draft<'_>, name: Option<&str>, row: &Row) -> Resu
 }
 
 /// Replaces a declaration by others.
+#[inline(never)]
 fn change(
     d: &mut Draft<'_>,
     home: Option<&str>,
@@ -211,6 +216,7 @@ fn change(
 }
 
 /// Adds a declaration after the last of its class, otherwise after the last declaration.
+#[inline(never)]
 pub(crate) fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) -> Result<(), Refusal> {
     match home {
         Some(chart) => {
@@ -234,6 +240,7 @@ pub(crate) fn put_variable(d: &mut Draft<'_>, home: Option<&str>, new: VarDecl) 
 }
 
 /// The declaration that a row describes, with the values as typed.
+#[inline(never)]
 fn declared(d: &mut Draft<'_>, row: &Row) -> Result<VarDecl, Refusal> {
     if row.name.trim().is_empty() {
         return refuse(say!("a variable has a name"));

@@ -19,6 +19,7 @@ use g7_syntax::{Token, TokenKind, tokens};
 use crate::change::Source;
 
 /// The first place that may hold a name, the old or the new one of a part, and was not read as such.
+#[inline(never)]
 pub(super) fn unread(
     source: &Source<'_>,
     refs: &References,
@@ -35,6 +36,7 @@ pub(super) fn unread(
 }
 
 /// The places of numbers that are read as values.
+#[inline(never)]
 fn numbers(source: &Source<'_>) -> Vec<Span> {
     struct Values(Vec<Span>);
     impl<'d> Visitor<'d> for Values {
@@ -98,6 +100,7 @@ impl Search<'_> {
     }
 
     /// True if a token stands in a broken place, so that nothing was read from it.
+    #[inline(never)]
     fn passed_over(&self, token: Token) -> bool {
         let bytes = token.start..token.end;
         let covers = |at: Span| at.bytes().start <= token.start && token.end <= at.bytes().end;
@@ -113,6 +116,7 @@ impl Search<'_> {
 
     /// True if a plain number may be the name of the step: in its own chart, where no item is read, and where its
     /// chart is named or the step is used without its chart.
+    #[inline(never)]
     fn number_may_be_step(&self, at: usize) -> bool {
         let Definition::Step { chart: own, .. } = self.definition else { return false };
         let inside = |span: Span| span.bytes().contains(&at);
