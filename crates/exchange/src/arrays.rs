@@ -164,7 +164,7 @@ impl Visitor for Single {
     fn expr(&mut self, e: &mut Expr) {
         let ExprKind::Element(path, index, bit) = &e.kind else { return };
         if let Some(mut single) = self.element(path, index) {
-            single.names.extend(bit.clone());
+            single.names.extend(bit.as_deref().cloned());
             e.kind = ExprKind::Path(single);
         }
     }

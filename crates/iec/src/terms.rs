@@ -51,16 +51,20 @@ pub(crate) fn reads(e: &Expr, target: &Expr) -> bool {
         }
         ExprKind::List(values) => values.iter().any(|(_, e)| reads(e, target)),
         ExprKind::Element(_, index, _) if index.iter().any(|e| reads(e, target)) => true,
-        ExprKind::Path(path) | ExprKind::Element(path, ..) => match target_name(target) {
-            Some(name) => path.names.iter().any(|n| n.text.eq_ignore_ascii_case(name)),
-            None => true,
-        },
+        ExprKind::Path(path) => path_reads(path, target),
+        ExprKind::Element(path, ..) => path_reads(path, target),
         ExprKind::Direct(name) => match &target.kind {
             ExprKind::Direct(other) => name == other,
             _ => true,
         },
         ExprKind::Literal(_) | ExprKind::Bad => false,
     }
+}
+
+/// True if a path may read the variable of a target.
+fn path_reads(path: &Path, target: &Expr) -> bool {
+    let named = |name: &str| path.names.iter().any(|n| n.text.eq_ignore_ascii_case(name));
+    target_name(target).is_none_or(named)
 }
 
 fn first_name(path: &Path) -> Option<&str> {
@@ -70,10 +74,9 @@ fn first_name(path: &Path) -> Option<&str> {
 /// The name by which other paths would refer to the target; None for a direct name.
 fn target_name(target: &Expr) -> Option<&str> {
     match &target.kind {
-        ExprKind::Path(path) | ExprKind::Element(path, ..) => {
-            // `Chart.v` is also `v` inside the chart; a member changes with its instance.
-            path.names.last().map(|n| &*n.text)
-        }
+        // `Chart.v` is also `v` inside the chart; a member changes with its instance.
+        ExprKind::Path(path) => path.names.last().map(|n| &*n.text),
+        ExprKind::Element(path, ..) => path.names.last().map(|n| &*n.text),
         _ => None,
     }
 }

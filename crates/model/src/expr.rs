@@ -37,7 +37,7 @@ pub enum ExprKind {
     /// `f(x, n := y)`.
     Call(Path, Vec<Arg>),
     /// An element of an array, or a bit of one: `a[i]`, `Chart.a[i, j]`, `w[i].3`.
-    Element(Path, Vec<Expr>, Option<Name>),
+    Element(Box<Path>, Vec<Expr>, Option<Box<Name>>),
     /// `[1, 2, 4(0)]`, the values of an array, each with its number of repetitions.
     List(Vec<(u32, Expr)>),
     /// Text that could not be read; a problem has been reported.

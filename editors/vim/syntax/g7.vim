@@ -19,9 +19,9 @@ syntax keyword g7Reserved return step task then to transition until var when whi
 syntax keyword g7WordOperator AND MOD NOT OR XOR and mod not or xor
 syntax keyword g7Edge delay fall rise
 syntax keyword g7Boolean FALSE TRUE false true
-syntax keyword g7Type F_TRIG R_TRIG STRING DWORD LREAL LWORD UDINT ULINT USINT BOOL
-syntax keyword g7Type BYTE CTUD DINT LINT REAL SINT TIME UINT WORD CTD
-syntax keyword g7Type CTU INT TOF TON RS SR TP
+syntax keyword g7Type F_TRIG R_TRIG STRING ARRAY DWORD LREAL LWORD UDINT ULINT USINT
+syntax keyword g7Type BOOL BYTE CTUD DINT LINT REAL SINT TIME UINT WORD
+syntax keyword g7Type CTD CTU INT TOF TON RS SR TP
 syntax keyword g7Profile iec60848 iec61131 jgrafchart pl7 unity
 syntax keyword g7Profile tsx3710 tsx3720 tsx57
 syntax match g7Profile /\<\%(parallel-actions\|ordered-actions\|keep-step-time\|zero-step-time\|no-final-scan\|simultaneous\|single-token\|multi-token\|pulse-first\|final-scan\|scan-clock\|sequential\|text-order\|time-clock\|one-pass\|stable\|bound\)\>/

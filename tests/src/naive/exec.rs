@@ -74,7 +74,7 @@ impl<'a> Exec<'a> {
             ExprKind::Call(path, args) => self.call(scope, path, args),
             ExprKind::Element(path, index, bit) => {
                 let indexes = self.indexes(scope, index)?;
-                let element = self.element(scope, path, &indexes, bit.as_ref())?;
+                let element = self.element(scope, path, &indexes, bit.as_deref())?;
                 self.read(&element)
             }
             ExprKind::List(_) => bad("a list of values"),

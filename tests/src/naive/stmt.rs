@@ -56,7 +56,7 @@ impl Exec<'_> {
                     // The index is evaluated before the value.
                     let indexes = self.indexes(scope, index)?;
                     let value = self.eval(scope, value)?;
-                    let element = self.element(scope, path, &indexes, bit.as_ref())?;
+                    let element = self.element(scope, path, &indexes, bit.as_deref())?;
                     return self.put(Some(element), &value).map(|()| Flow::Next);
                 }
                 let value = self.eval(scope, value)?;
@@ -172,7 +172,7 @@ impl Exec<'_> {
             ExprKind::Direct(d) => self.m.resolve_direct(d),
             ExprKind::Element(path, index, bit) => {
                 let indexes = self.indexes(scope, index)?;
-                Some(self.element(scope, path, &indexes, bit.as_ref())?)
+                Some(self.element(scope, path, &indexes, bit.as_deref())?)
             }
             _ => None,
         };

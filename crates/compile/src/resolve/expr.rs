@@ -48,7 +48,7 @@ impl Resolver<'_, '_> {
             Form::Binary(..) => self.chain(e, hint),
             Form::Timer { t1, e, t2 } => self.timer(t1, e, t2.as_deref(), at),
             Form::Call(path, args) => self.call(path, args, hint, at),
-            Form::Element(path, index, bit) => self.read_element(path, index, bit.as_ref(), at),
+            Form::Element(path, index, bit) => self.read_element(path, index, bit.as_deref(), at),
             // Only a declaration of an array has one, and the parser reads it nowhere else.
             Form::List(_) | Form::Bad => None,
         }

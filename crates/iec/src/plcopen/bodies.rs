@@ -225,7 +225,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
                     Found::Unit(_) | Found::Action(..) => path.names,
                 };
                 let index = index.into_iter().map(|e| self.expr(e, place)).collect();
-                ExprKind::Element(Path { names }, index, member)
+                ExprKind::Element(Box::new(Path { names }), index, member)
             }
             ExprKind::List(values) => {
                 ExprKind::List(values.into_iter().map(|(n, e)| (n, self.expr(e, place))).collect())

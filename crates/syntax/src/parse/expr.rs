@@ -494,8 +494,8 @@ impl Parser<'_> {
         }
         self.close(Tok::RBracket, say!("`]`"), open);
         self.leave();
-        let member = self.eat(Tok::PathDot).then(|| self.member());
-        (ExprKind::Element(path, index, member), height)
+        let member = self.eat(Tok::PathDot).then(|| Box::new(self.member()));
+        (ExprKind::Element(Box::new(path), index, member), height)
     }
 
     fn path_or_call(&mut self) -> Tree {

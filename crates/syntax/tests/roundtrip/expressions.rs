@@ -171,9 +171,10 @@ pub(crate) fn expr() -> impl Strategy<Value = Expr> {
 
 /// An element of an array, or a bit of one.
 pub(crate) fn element(index: impl Strategy<Value = Expr>) -> impl Strategy<Value = Expr> {
-    let bit = prop::option::of(0..64_u8).prop_map(|n| n.map(|n| Name::new(n.to_string(), Span::default())));
+    let bit = prop::option::of(0..64_u8)
+        .prop_map(|n| n.map(|n| Box::new(Name::new(n.to_string(), Span::default()))));
     (path(), prop::collection::vec(index, 1..3), bit)
-        .prop_map(|(p, index, bit)| of(ExprKind::Element(p, index, bit)))
+        .prop_map(|(p, index, bit)| of(ExprKind::Element(Box::new(p), index, bit)))
 }
 
 /// The values of an array.
