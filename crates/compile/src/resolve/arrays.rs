@@ -101,7 +101,7 @@ impl<'d> Resolver<'_, 'd> {
             let what = say!("an array has no address of its own");
             let help = say!("give its elements their channels in the io file, or declare single variables");
             let place = address.at.0;
-            return self.report(Problem::new(&codes::BAD_DECLARATION, place, what).help(help));
+            self.problems.push(Problem::new(&codes::BAD_DECLARATION, place, what).help(help));
         }
         let mut dimensions = Vec::new();
         let mut count = 1_u64;
