@@ -25,7 +25,7 @@ use crate::ir::{
     BinaryOp, ChartId, Elements, Expr, ExprKind, Stmt, StmtKind, Target, Value, VarClass, VarId,
 };
 
-/// The elements that one array may have.
+/// The elements that all arrays of a document together may have.
 const MOST: u64 = 1 << 16;
 
 /// An element of an array.
@@ -58,8 +58,10 @@ impl<'d> Resolver<'_, 'd> {
         class: VarClass,
     ) -> Vec<VarId> {
         let Some(written) = &decl.array else { return Vec::new() };
-        let Some(dimensions) = self.fitting_array(decl, written) else { return Vec::new() };
-        let count = dimensions.iter().map(|(_, n)| *n).product();
+        // The names of an array that cannot be are known all the same, so that their uses are no problems of their own.
+        let dimensions = self.fitting_array(decl, written).unwrap_or_default();
+        let none = dimensions.is_empty();
+        let count = if none { 0 } else { dimensions.iter().map(|(_, n)| *n).product() };
         let mut ids = Vec::new();
         for name in &decl.names {
             let number = self.scopes.arrays.len() as u32;
@@ -81,6 +83,9 @@ impl<'d> Resolver<'_, 'd> {
                     v.retain = decl.retain;
                     v.inverted = decl.inverted;
                     v.comment.clone_from(&decl.comment);
+                }
+                if class == VarClass::Const {
+                    self.pending.insert(id);
                 }
                 ids.push(id);
             }
@@ -115,8 +120,10 @@ impl<'d> Resolver<'_, 'd> {
             }
             let number = high.abs_diff(low).saturating_add(1);
             count = count.saturating_mul(number);
-            if count > MOST {
-                let what = say!("an array has at most {MOST} elements");
+            let before: u64 = self.scopes.arrays.iter().map(|a| u64::from(a.count)).sum();
+            let all = count.saturating_mul(decl.names.len() as u64).saturating_add(before);
+            if all > MOST {
+                let what = say!("all arrays together have at most {MOST} elements");
                 return self.report(Problem::new(&codes::OUT_OF_RANGE, place, what));
             }
             dimensions.push((low, number as u32));
@@ -148,18 +155,19 @@ impl<'d> Resolver<'_, 'd> {
     /// Resolves the values that a declaration gives to its arrays.
     pub(super) fn give_elements(&mut self, chart: Option<ChartId>, decl: &VarDecl, ids: &[VarId]) {
         let Some(first) = ids.first() else { return };
-        let Some(count) = self.scopes.arrays.iter().find(|a| a.first == *first).map(|a| a.count as usize)
+        let Some(count) =
+            self.scopes.arrays.iter().find(|a| a.first == *first && a.count > 0).map(|a| a.count as usize)
         else {
             return;
         };
-        let values = decl.init.as_ref().map(|e| self.element_values(chart, decl.ty, e, count));
+        let given = decl.init.as_ref().map(|e| self.element_values(chart, decl.ty, e, count));
+        let given = given.unwrap_or_default();
         let safe = decl.safe.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         for array in ids.chunks(count) {
-            let given = values.iter().flatten();
             for (n, id) in array.iter().enumerate() {
                 self.pending.remove(id);
                 let Some(v) = self.unit.vars.get_mut(id.index()) else { continue };
-                if let Some(Some(value)) = given.clone().nth(n) {
+                if let Some(Some(value)) = given.get(n) {
                     v.init = value.clone();
                 }
                 if let Some(value) = &safe {
@@ -210,6 +218,9 @@ impl<'d> Resolver<'_, 'd> {
             let what = say!("`{}` is no array; it has no elements", path.text());
             return self.report(Problem::new(&codes::WRONG_KIND, at, what));
         };
+        if array.count == 0 {
+            return None; // Its declaration has been reported.
+        }
         if index.len() != array.dimensions.len() {
             let (has, given) = (array.dimensions.len(), index.len());
             let what = say!("the number of indexes of `{}` is {has}; {given} stand here", array.name);
@@ -254,7 +265,10 @@ impl<'d> Resolver<'_, 'd> {
         at: Span,
     ) -> Option<Typed> {
         match (self.element(path, index, at)?, bit) {
-            (Element::Known(v), None) => self.read(Ref::Var(v), at),
+            (Element::Known(v), None) => {
+                self.has_value(v, &path.text(), at)?;
+                self.read(Ref::Var(v), at)
+            }
             (Element::Known(v), Some(bit)) => {
                 let part = self.bit_of_element(v, bit)?;
                 self.read(part, at)
@@ -342,6 +356,9 @@ impl<'d> Resolver<'_, 'd> {
                 say!("`{}` is an array; only an array of its bounds and type can be assigned", target.name);
             return Some(self.report(Problem::new(&codes::WRONG_TYPE, from.at.0, what)));
         };
+        if target.count == 0 || source.count == 0 {
+            return Some(None); // Its declaration has been reported.
+        }
         if target.dimensions != source.dimensions || target.ty != source.ty {
             let what = say!("`{}` and `{}` differ in bounds or type", target.name, source.name);
             return Some(self.report(Problem::new(&codes::WRONG_TYPE, to.at.0.to(from.at.0), what)));

@@ -14,7 +14,7 @@ use super::resolver::{Resolver, Role};
 use super::scopes::Entity;
 use super::types::Typed;
 use super::{bits, constant};
-use crate::ir::{Expr, ExprKind, Value, VarClass};
+use crate::ir::{Expr, ExprKind, Value, VarClass, VarId};
 
 impl Resolver<'_, '_> {
     /// Resolves an expression of the type that is needed here.
@@ -125,13 +125,18 @@ impl Resolver<'_, '_> {
     /// Reports a constant that uses itself, or one that is declared later.
     fn not_yet_known(&mut self, name: &g7_model::Name) -> Option<()> {
         let Some(Entity::Var(v)) = self.entity(&name.text) else { return Some(()) };
+        self.has_value(v, &name.text, name.at.0)
+    }
+
+    /// Reports a constant whose value is not known yet.
+    pub(super) fn has_value(&mut self, v: VarId, name: &str, at: Span) -> Option<()> {
         if !self.pending.contains(&v) {
             return Some(());
         }
         let declared = self.var(v)?.at;
-        let what = say!("`{}` has no value yet", name.text);
+        let what = say!("`{name}` has no value yet");
         self.report(
-            Problem::new(&codes::NOT_CONSTANT, name.at.0, what)
+            Problem::new(&codes::NOT_CONSTANT, at, what)
                 .related(declared, say!("declared here"))
                 .help(say!("constants get their values in the order of the text")),
         )

@@ -65,7 +65,7 @@ pub(super) struct Array {
     pub(super) name: Box<str>,
     /// Its first element.
     pub(super) first: VarId,
-    /// The number of its elements.
+    /// The number of its elements; 0 if its declaration is wrong.
     pub(super) count: u32,
     /// The least index and the number of indexes of each dimension.
     pub(super) dimensions: Vec<(i64, u32)>,
