@@ -262,8 +262,7 @@ fn printed_rust_is_clean_by_clippy() {
         .iter()
         .enumerate()
         .filter_map(|(i, s)| {
-            let style =
-                if i % 9 == 6 && s.room == Room::default() { Style::Flat } else { Style::Structured };
+            let style = if i % 9 == 6 && s.room == Room::default() { Style::Flat } else { Style::Structured };
             let printed = s.print(Language::Rust, style, "c").ok().filter(|p| p.problems.is_empty())?;
             // Few charts read a number from a text, so none of them is left out.
             let file = printed.files.last().filter(|f| i % 3 == 0 || f.text.contains("text_to_"))?;

@@ -4,34 +4,35 @@
 //! model::Document -> here -> the writer of a format
 //! ```
 //!
-//! `a[2]` becomes `a_2`. An element that the run chooses (`a[i]`) and the assignment of a whole array stay as
-//! they are, so the writer reports them at their place.
+//! `a[2]` becomes `a_2`. An element with a variable index (`a[i]`) and the assignment of a whole array stay as they
+//! are, so the writer reports them at their place.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
+use g7_iec::scopes::{Ref, Scopes, VarKey};
+use g7_model::visit::Visitor as Reader;
 use g7_model::visit_mut::{self, Visitor};
 use g7_model::{
-    ActionKind, ChartItem, Document, Expr, ExprKind, Item, Name, Path, Step, Target, VarDecl, VarKind,
+    ActionKind, Block, ChartItem, Document, Expr, ExprKind, Item, Name, Order, Path, Span, Target, VarDecl,
+    VarKind,
 };
 
-/// The chart, or none for the file, and the name of an array.
-type Key = (Option<Box<str>>, Box<str>);
-
-/// The elements of an array, each with its indexes and its name.
+/// The name of the variable for each element of an array, by the indexes of the element.
 type Elements = HashMap<Vec<i128>, Box<str>>;
 
-/// A document without arrays, except for elements that the run chooses.
+/// The document with single variables for its arrays.
 pub(crate) fn singled(document: &Document) -> Cow<'_, Document> {
     if !variables(document).any(|(_, v)| v.array.is_some()) {
         return Cow::Borrowed(document);
     }
     let mut single = Single::of(document);
     let mut own = document.clone();
-    own.items = std::mem::take(&mut own.items).into_iter().flat_map(|item| single.item(item)).collect();
+    own.items = own.items.into_iter().flat_map(|item| single.item(item)).collect();
     Cow::Owned(own)
 }
 
+/// All declarations, each with the name of its chart.
 fn variables(document: &Document) -> impl Iterator<Item = (Option<&str>, &VarDecl)> {
     document.items.iter().flat_map(|item| {
         let (chart, items): (_, &[ChartItem]) = match item {
@@ -45,27 +46,44 @@ fn variables(document: &Document) -> impl Iterator<Item = (Option<&str>, &VarDec
     })
 }
 
-struct Single {
-    arrays: HashMap<Key, Elements>,
-    constants: HashMap<Box<str>, i128>,
-    chart: Option<Box<str>>,
+/// Collects the names of the local variables of all blocks.
+#[derive(Default)]
+struct Locals<'d>(HashSet<&'d str>);
+
+impl<'d> Reader<'d> for Locals<'d> {
+    fn path(&mut self, _: &'d [Name]) {}
+
+    fn direct(&mut self, _: &'d str, _: Span) {}
+
+    fn order(&mut self, _: &'d Order) {}
+
+    fn enter(&mut self, block: &'d Block) {
+        self.0.extend(block.locals.iter().flat_map(|l| &l.names).map(|n| &*n.text));
+    }
 }
 
-impl Single {
-    fn of(document: &Document) -> Single {
-        let mut made = Single { arrays: HashMap::new(), constants: HashMap::new(), chart: None };
-        let mut taken: HashSet<String> = HashSet::new();
-        for (_, v) in variables(document) {
-            taken.extend(v.names.iter().map(|n| n.text.to_lowercase()));
-            if let (VarKind::Const, Some(n)) = (v.kind, v.init.as_ref().and_then(|e| e.kind.whole())) {
-                made.constants.extend(v.names.iter().map(|name| (name.text.clone(), n)));
-            }
-        }
+struct Single<'d> {
+    scopes: Scopes<'d>,
+    arrays: HashMap<VarKey<'d>, Elements>,
+    locals: Locals<'d>,
+    /// The chart that is being rewritten.
+    chart: Option<usize>,
+}
+
+impl<'d> Single<'d> {
+    fn of(document: &'d Document) -> Single<'d> {
+        let mut locals = Locals::default();
+        locals.document(document);
+        let scopes = Scopes::new(document);
+        let mut made = Single { scopes, arrays: HashMap::new(), locals, chart: None };
+        let mut taken: HashSet<String> =
+            variables(document).flat_map(|(_, v)| &v.names).map(|n| n.text.to_lowercase()).collect();
         for (chart, v) in variables(document) {
+            made.chart = chart.and_then(|c| made.scopes.chart_named(c));
             let Some(indexes) = made.indexes(v) else { continue };
             for name in &v.names {
                 let elements = indexes.iter().map(|i| (i.clone(), free(&name.text, i, &mut taken))).collect();
-                made.arrays.insert((chart.map(Box::from), name.text.clone()), elements);
+                made.arrays.insert((made.chart, &name.text), elements);
             }
         }
         made
@@ -81,38 +99,39 @@ impl Single {
         Some(all)
     }
 
-    /// A number that is written, or that of a constant.
+    /// A number that is written, or that of a constant. A name that is also that of a local variable is not
+    /// taken for a constant.
     fn whole(&self, e: &Expr) -> Option<i128> {
-        match &e.kind {
-            ExprKind::Path(path) => self.constants.get(&path.names.last()?.text).copied(),
-            kind => kind.whole(),
+        let ExprKind::Path(path) = &e.kind else { return e.kind.whole() };
+        let hidden = path.names.first().is_none_or(|n| self.locals.0.contains(&*n.text));
+        match self.scopes.refer(self.chart, &path.names) {
+            Some(Ref::Var(key)) if !hidden => {
+                let decl = self.scopes.decl(key).filter(|d| d.kind == VarKind::Const)?;
+                decl.init.as_ref()?.kind.whole()
+            }
+            _ => None,
         }
     }
 
     fn item(&mut self, item: Item) -> Vec<Item> {
+        let mut one = Document::default();
         match item {
-            Item::Var(v) => self.declared(v).into_iter().map(Item::Var).collect(),
+            Item::Var(v) => return self.declared(v).into_iter().map(Item::Var).collect(),
             Item::Chart(mut chart) => {
-                self.chart = Some(chart.name.text.clone());
-                chart.items = std::mem::take(&mut chart.items)
-                    .into_iter()
-                    .flat_map(|item| match item {
-                        ChartItem::Var(v) => self.declared(v).into_iter().map(ChartItem::Var).collect(),
-                        item => vec![item],
-                    })
-                    .collect();
-                let mut one = Document { items: vec![Item::Chart(chart)], ..Document::default() };
-                visit_mut::document(&mut one, self);
-                self.chart = None;
-                one.items.iter_mut().for_each(retarget);
-                one.items
+                self.chart = self.scopes.chart_named(&chart.name.text);
+                let items = chart.items.into_iter().flat_map(|item| match item {
+                    ChartItem::Var(v) => self.declared(v).into_iter().map(ChartItem::Var).collect(),
+                    item => vec![item],
+                });
+                chart.items = items.collect();
+                one.items.push(Item::Chart(chart));
             }
-            item => {
-                let mut one = Document { items: vec![item], ..Document::default() };
-                visit_mut::document(&mut one, self);
-                one.items
-            }
+            item => one.items.push(item),
         }
+        visit_mut::document(&mut one, self);
+        self.chart = None;
+        one.items.iter_mut().for_each(retarget);
+        one.items
     }
 
     /// The declaration, or one for each element.
@@ -126,11 +145,12 @@ impl Single {
         if let Some(ExprKind::List(list)) = v.init.as_ref().map(|e| &e.kind) {
             given.extend(list.iter().flat_map(|(n, e)| std::iter::repeat_n(e, *n as usize)));
         }
+        let indexes = self.indexes(v).unwrap_or_default();
         let mut all = Vec::new();
         for name in &v.names {
-            let Some(elements) = self.arrays.get(&(self.chart.clone(), name.text.clone())) else { continue };
-            for (place, indexes) in self.indexes(v).into_iter().flatten().enumerate() {
-                let Some(text) = elements.get(&indexes) else { continue };
+            let Some(elements) = self.arrays.get(&(self.chart, &*name.text)) else { continue };
+            for (place, indexes) in indexes.iter().enumerate() {
+                let Some(text) = elements.get(indexes) else { continue };
                 all.push(VarDecl {
                     names: vec![Name::new(text.clone(), name.at.0)],
                     array: None,
@@ -145,22 +165,15 @@ impl Single {
     /// The variable that stands for an element with known indexes.
     fn element(&self, path: &Path, index: &[Expr]) -> Option<Path> {
         let indexes: Option<Vec<i128>> = index.iter().map(|e| self.whole(e)).collect();
-        let indexes = indexes?;
-        let own = |chart: Option<&Box<str>>, name: &Name| {
-            self.arrays.get(&(chart.cloned(), name.text.clone()))?.get(&indexes)
-        };
-        let found = match path.names.as_slice() {
-            [name] => own(self.chart.as_ref(), name).or_else(|| own(None, name)),
-            [chart, name] => own(Some(&chart.text), name),
-            _ => None,
-        };
+        let Some(Ref::Var(key)) = self.scopes.refer(self.chart, &path.names) else { return None };
+        let text = self.arrays.get(&key)?.get(&indexes?)?;
         let mut names = path.names.clone();
-        names.last_mut()?.text = found?.clone();
+        names.last_mut()?.text = text.clone();
         Some(Path { names })
     }
 }
 
-impl Visitor for Single {
+impl Visitor for Single<'_> {
     fn expr(&mut self, e: &mut Expr) {
         let ExprKind::Element(path, index, bit) = &e.kind else { return };
         if let Some(mut single) = self.element(path, index) {
@@ -175,7 +188,7 @@ fn retarget(item: &mut Item) {
     let Item::Chart(chart) = item else { return };
     let steps =
         chart.items.iter_mut().filter_map(|i| if let ChartItem::Step(s) = i { Some(s) } else { None });
-    for action in steps.flat_map(|s: &mut Step| &mut s.actions) {
+    for action in steps.flat_map(|s| &mut s.actions) {
         if let ActionKind::Qualified { target, .. } = &mut action.kind
             && let Target::Element(e) = target
             && let ExprKind::Path(path) = &e.kind

@@ -49,7 +49,6 @@ impl<'d> Lower<'d> {
                 _ => None,
             },
             Target::Direct(address, _) => self.scopes.at(address),
-            // `arrays` has put single variables in the place of elements.
             Target::Element(_) | Target::Work(_) => None,
         }
     }
@@ -274,6 +273,10 @@ impl<'d> Lower<'d> {
             return self.driving(key, drive, span, at);
         }
         let (qualifier, time) = (drive.qualifier, self.drive_time(drive, at));
+        if matches!(target, Target::Element(_)) {
+            self.no_element(span);
+            return None;
+        }
         let Target::Path(path) = target else {
             self.lost(span, say!("what a step drives has a name; declare a variable at this address"));
             return None;

@@ -38,7 +38,7 @@ impl<'d> Lower<'d> {
         let span = e.at.0;
         let kind = match &e.kind {
             ExprKind::Element(..) | ExprKind::List(_) => {
-                self.lost(span, say!("an element of an array by an index that is not written as a number"));
+                self.no_element(span);
                 return e.clone();
             }
             ExprKind::Literal(_) | ExprKind::Bad => return e.clone(),
@@ -456,6 +456,11 @@ impl<'d> Lower<'d> {
             let uses = if writes { &mut self.written } else { &mut self.read };
             uses.insert((key, program));
         }
+    }
+
+    /// Reports an element for which there is no single variable.
+    pub(super) fn no_element(&mut self, span: Span) {
+        self.lost(span, say!("an element of an array by an index that is not written as a number"));
     }
 
     pub(super) fn lost(&mut self, span: Span, what: Said) {

@@ -127,7 +127,7 @@ impl Control<'_> {
                         });
                         list.push(drive);
                     }
-                    // `arrays` has put single variables in their place.
+                    // `standard` has reported it.
                     Target::Element(_) => {}
                     Target::Work(work) => bodies.push(Work {
                         name: format!("{}_{}", step.name.text, number + 1),

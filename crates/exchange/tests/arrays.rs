@@ -1,0 +1,60 @@
+//! Arrays leave as single variables: the right element for each index, and no element where it is not known.
+
+use g7_model::FileId;
+
+/// What leaves as IEC 61131-3 text, and the places of its errors as words of the chart.
+fn sfc(text: &str) -> (String, Vec<&str>) {
+    let (document, mut problems) = g7_syntax::parse(text, FileId(0));
+    problems.append(&mut g7_compile::check(&document));
+    assert!(problems.is_empty(), "{problems:?}");
+    let written = g7_exchange::named("sfc").and_then(|f| f.write(&document)).expect("it is written");
+    let errors = written.problems.iter().filter(|p| p.severity() == g7_model::Severity::Error);
+    let words = errors.map(|p| &text[p.at.bytes()]).collect();
+    (written.text, words)
+}
+
+/// Two charts that each drive an element; `first` and `second` stand in their actions.
+fn charts(first: &str, second: &str) -> String {
+    format!(
+        "profile iec61131\ninput b : ARRAY[1..2] OF BOOL\nvar x : ARRAY[-1..2] OF INT := [4, 2(5)]\n\
+         chart G {{\n  const c : INT := 1\n  initial step 0 {{ {first} }}\n  step 1\n  0 -> 1 when b[1]\n  1 -> 0 when not \
+         b[c]\n}}\nchart H {{\n  const c : INT := 2\n  initial step 0 {{ {second} }}\n  step 1\n  0 -> 1 when b[2]\n  \
+         1 -> 0 when not b[c]\n}}\n"
+    )
+}
+
+#[test]
+fn a_constant_is_that_of_its_own_chart() {
+    let chart = charts("P1 x[c] := 7", "P1 x[c] := x[-1]");
+    let (text, errors) = sfc(&chart);
+    assert_eq!(errors, Vec::<&str>::new());
+    for line in
+        ["x_1 := 7;", "x_2 := x_m1;", ":= NOT b_1;", ":= NOT b_2;", "x_m1 : INT := 4;", "x_0 : INT := 5;"]
+    {
+        assert!(text.contains(line), "{line} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn a_local_variable_is_not_taken_for_the_constant_that_it_hides() {
+    let chart = charts("P1 { var c : INT := 2; x[c] := 7 }", "P1 x[0] := 7");
+    let (_, errors) = sfc(&chart);
+    // Elsewhere the constant could be known; to refuse it is safe.
+    assert_eq!(errors, ["x[c]", "b[c]", "b[c]"]);
+}
+
+#[test]
+fn what_has_no_single_variable_is_refused_at_its_place() {
+    let chart = charts("P1 x[x[0]] := 7", "P1 x[1] := x[x[1]]");
+    assert_eq!(sfc(&chart).1, ["x[x[0]]", "x[x[1]]"]);
+}
+
+#[test]
+fn names_that_are_taken_stay() {
+    let (text, errors) = sfc(
+        "input x_1 : BOOL\nvar x : ARRAY[1..1] OF BOOL\nchart G {\n  initial step 0 { N x[1] }\n  step 1\n  \
+                              0 -> 1 when x_1\n  1 -> 0 when not x_1\n}\n",
+    );
+    assert_eq!(errors, Vec::<&str>::new());
+    assert!(text.contains("x_1_"), "{text}");
+}
