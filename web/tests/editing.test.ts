@@ -168,7 +168,7 @@ test('everything that was done is undone, and done again', async () => {
 /** For each symbol in the document: its box in the drawing, its texts and its name for screen readers. */
 const shown = (page: Page): Promise<Record<string, string>> =>
   page.evaluate(async () => {
-    // In a new page the picture may come before its font.
+    // A new page may show the drawing before its font is loaded.
     await document.fonts.ready;
     const origin = document.querySelector('.plane')?.getBoundingClientRect();
     const symbols = [...document.querySelectorAll('.still [data-id]')];

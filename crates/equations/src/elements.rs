@@ -1,7 +1,7 @@
-//! Elements that the run chooses: of a table, and of variables that follow one another.
+//! Elements with a variable index: of a table, and of variables that follow one another.
 //!
-//! It stands beside `code`, which makes expressions and statements. An index is within its bounds behind
-//! `within`, else the fault `range` is left.
+//! It stands beside `code`, which makes expressions and statements and calls it. `within` comes first: it leaves the
+//! fault `range` for an index outside of its bounds, so that the other functions need not look at them.
 
 use g7_engine::{Addr, Cmp, FaultKind};
 use g7_model::{Span, Type};
@@ -10,6 +10,7 @@ use crate::code::Body;
 use crate::form::{Expr, Stmt};
 
 impl Body<'_, '_> {
+    /// The index, behind a check that it is from 0 to below the length.
     pub(crate) fn within(&mut self, index: Expr, len: u32, at: Span) -> Expr {
         if let Expr::Const(_, v) = index
             && v < u64::from(len)
@@ -23,8 +24,8 @@ impl Body<'_, '_> {
         index
     }
 
-    /// One of several variables, by an index within their number. Statements choose it, since not every
-    /// language has a function that does.
+    /// The value of one of several variables; the index is less than their number. It is copied by a row of IF, since
+    /// not every language has MUX.
     pub(crate) fn choice(&mut self, ty: Type, base: Addr, len: u32, index: &Expr) -> Expr {
         let chosen = self.m.temporary(ty);
         for k in 0..len {
@@ -35,7 +36,7 @@ impl Body<'_, '_> {
         Expr::Read(chosen)
     }
 
-    /// Writes one of several variables, by an index within their number.
+    /// Writes one of several variables; the index is less than their number.
     pub(crate) fn store_chosen(&mut self, ty: Type, base: Addr, len: u32, index: Expr, value: Expr) {
         let value = self.simple(value, ty);
         for k in 0..len {

@@ -2,7 +2,7 @@
 
 use g7_model::FileId;
 
-/// What leaves as IEC 61131-3 text, and the places of its errors as words of the chart.
+/// The IEC 61131-3 text of a chart, and the words at the places of its errors.
 fn sfc(text: &str) -> (String, Vec<&str>) {
     let (document, mut problems) = g7_syntax::parse(text, FileId(0));
     problems.append(&mut g7_compile::check(&document));

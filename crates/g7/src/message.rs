@@ -37,7 +37,7 @@ pub(crate) fn wrote(what: impl Display) {
     done(&say!("wrote"), what);
 }
 
-/// Prints what was done, and to what.
+/// Prints a finished action and its object: `wrote chart.svg`.
 pub(crate) fn done(word: &Said, what: impl Display) {
     talk!("{}{}{:#} {what}", style::GOOD, told(word), style::GOOD);
 }

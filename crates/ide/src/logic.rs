@@ -104,7 +104,7 @@ pub fn read(tongue: Tongue, text: &str) -> Result<String, Said> {
 /// steps and of members of blocks.
 fn is_boolean(e: &Expr, symbols: Option<&Symbols>) -> bool {
     let text = print_expr(e);
-    // Of an element that the run chooses, the first one tells the type.
+    // With a variable index, the first element of the array tells the type.
     let first = match &e.kind {
         ExprKind::Element(path, ..) => Some(format!("{}[", path.text())),
         _ => None,

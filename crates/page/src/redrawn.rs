@@ -73,7 +73,7 @@ struct Kept<'a> {
 struct Alike<'a> {
     /// The number of the symbol in the other drawing.
     r#as: usize,
-    /// The vector from there to this symbol.
+    /// The distance from the old symbol to this one, to the right and down.
     by: Spot,
     #[serde(flatten)]
     item: &'a Item,

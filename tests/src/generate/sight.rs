@@ -31,7 +31,7 @@ pub(super) struct Sight {
     pub(super) bits: bool,
 }
 
-/// True if the name is an element of an array that the run chooses.
+/// True if the name is an element of an array with a variable index.
 pub(super) fn is_chosen(name: &str) -> bool {
     name.contains(" mod ")
 }

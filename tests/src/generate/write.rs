@@ -197,8 +197,8 @@ fn variables(rng: &mut Rng, world: &mut World, out: &mut String) {
     arrays(rng, world, out);
 }
 
-/// Arrays, with elements that are known and elements that the run chooses. They are drawn from a copy: charts
-/// without arrays do not depend on it.
+/// Declares arrays, and offers elements with written and with variable indexes. It draws from a copy of the generator, so
+/// that a chart without arrays is the same as before there were arrays.
 fn arrays(rng: &Rng, world: &mut World, out: &mut String) {
     let mut rng = rng.clone();
     rng.bits();

@@ -15,7 +15,7 @@ export type Alignment = 'left' | 'top' | 'center' | 'distribute_x' | 'distribute
 export type Alike = {
   /** The number of the symbol in the other drawing. */
   as: number;
-  /** The vector from there to this symbol. */
+  /** The distance from the old symbol to this one, to the right and down. */
   by: Spot;
   id: string;
   part: Part;

@@ -339,7 +339,8 @@ impl<'d> Maker<'d> {
     }
 
     fn drive(&mut self, d: &'d g7_model::Drive) {
-        let (name, at) = (d.input.kind.variable().unwrap_or_default(), d.input.at);
+        let Some(name) = self.rewrite.charts_variable(&d.input) else { return };
+        let at = d.input.at;
         if let Some(first) = self.driven.insert(name.clone(), at) {
             let what = say!("input `{name}` is driven twice");
             self.rewrite.problems.push(

@@ -89,12 +89,19 @@ impl Rewrite<'_> {
 
     /// An element of an array of outputs, which the document of the plant has as a variable of this name.
     fn element(&mut self, at: At, e: &Expr) -> Expr {
-        match e.kind.variable() {
+        match self.charts_variable(e) {
             Some(name) => at.var(&name),
-            None => {
-                self.report(&codes::NOT_CONSTANT, at.0, say!("a plant reads elements by written indexes"))
-            }
+            None => at.expr(ExprKind::Bad),
         }
+    }
+
+    /// The name of a variable of the charts; reports a problem if an index in it is not written as a number.
+    pub(super) fn charts_variable(&mut self, e: &Expr) -> Option<String> {
+        let name = e.kind.variable();
+        if name.is_none() {
+            self.report(&codes::NOT_CONSTANT, e.at, say!("a plant names elements by written indexes"));
+        }
+        name
     }
 
     fn path(&mut self, at: At, path: &Path) -> Expr {

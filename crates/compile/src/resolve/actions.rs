@@ -119,12 +119,7 @@ impl Resolver<'_, '_> {
     }
 
     fn section_named(&self, p: &Path) -> Option<SectionId> {
-        let entity = match p.names.as_slice() {
-            [name] => self.entity(&name.text),
-            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
-            _ => None,
-        };
-        match entity {
+        match self.named(&p.names) {
             Some(Entity::Section(s)) => Some(s),
             _ => None,
         }
@@ -209,12 +204,7 @@ impl Resolver<'_, '_> {
 
     /// A Boolean variable or a named action.
     fn governed(&mut self, p: &Path) -> Option<Governed> {
-        let entity = match p.names.as_slice() {
-            [name] => self.entity(&name.text),
-            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
-            _ => None,
-        };
-        if let Some(Entity::Body(b)) = entity {
+        if let Some(Entity::Body(b)) = self.named(&p.names) {
             return Some(Governed::Body(b));
         }
         let at = p.names.iter().map(|n| n.at.0).reduce(Span::to).unwrap_or_default();

@@ -30,13 +30,18 @@ const MOST: u64 = 1 << 16;
 
 /// An element of an array.
 pub(super) enum Element {
-    /// A known one.
+    /// One with known indexes.
     Known(VarId),
-    /// The one that indexes from 0 (LINT) choose, and its type.
+    /// One with a variable index: all elements, their type, and the index in each dimension (LINT, from 0).
     Chosen(Elements, Type, Vec<Expr>),
 }
 
 impl Array {
+    /// The number of its elements.
+    fn count(&self) -> u32 {
+        if self.dimensions.is_empty() { 0 } else { self.dimensions.iter().map(|(_, n)| n).product() }
+    }
+
     /// The indexes of an element, as its name has them.
     fn indexes(&self, mut place: u32) -> String {
         let mut all: Vec<String> = Vec::new();
@@ -46,6 +51,15 @@ impl Array {
         }
         all.reverse();
         all.join(",")
+    }
+
+    /// The element with these indexes, each from 0.
+    fn chosen(&self, indexes: Vec<Expr>) -> Element {
+        let places: Option<Vec<i64>> = indexes.iter().map(known).collect();
+        let all = Elements { first: self.first, counts: self.dimensions.iter().map(|(_, n)| *n).collect() };
+        let Some(places) = places else { return Element::Chosen(all, self.ty, indexes) };
+        let place = places.iter().zip(&all.counts).fold(0, |sum, (i, count)| sum * i64::from(*count) + i);
+        Element::Known(VarId(self.first.0 + place as u32))
     }
 }
 
@@ -60,8 +74,6 @@ impl<'d> Resolver<'_, 'd> {
         let Some(written) = &decl.array else { return Vec::new() };
         // The names of an array that cannot be are known all the same, so that their uses are no problems of their own.
         let dimensions = self.fitting_array(decl, written).unwrap_or_default();
-        let none = dimensions.is_empty();
-        let count = if none { 0 } else { dimensions.iter().map(|(_, n)| *n).product() };
         let mut ids = Vec::new();
         for name in &decl.names {
             let number = self.scopes.arrays.len() as u32;
@@ -71,12 +83,11 @@ impl<'d> Resolver<'_, 'd> {
             let array = Array {
                 name: self.qualified(chart, &name.text),
                 first: VarId(self.unit.vars.len() as u32),
-                count,
                 dimensions: dimensions.clone(),
                 ty: decl.ty,
                 at: name.at.0,
             };
-            for place in 0..count {
+            for place in 0..array.count() {
                 let element = format!("{}[{}]", array.name, array.indexes(place)).into();
                 let id = self.add_var(element, class, decl.ty, name.at.0);
                 if let Some(v) = self.unit.vars.get_mut(id.index()) {
@@ -94,7 +105,7 @@ impl<'d> Resolver<'_, 'd> {
         ids
     }
 
-    /// The bounds of an array that can be; reports a problem if it cannot.
+    /// The bounds of each dimension; reports a problem if there can be no such array.
     fn fitting_array(&mut self, decl: &VarDecl, written: &Written) -> Option<Vec<(i64, u32)>> {
         let at = written.at.0;
         if let Type::Fb(kind) = decl.ty {
@@ -120,7 +131,7 @@ impl<'d> Resolver<'_, 'd> {
             }
             let number = high.abs_diff(low).saturating_add(1);
             count = count.saturating_mul(number);
-            let before: u64 = self.scopes.arrays.iter().map(|a| u64::from(a.count)).sum();
+            let before: u64 = self.scopes.arrays.iter().map(|a| u64::from(a.count())).sum();
             let all = count.saturating_mul(decl.names.len() as u64).saturating_add(before);
             if all > MOST {
                 let what = say!("all arrays together have at most {MOST} elements");
@@ -155,8 +166,12 @@ impl<'d> Resolver<'_, 'd> {
     /// Resolves the values that a declaration gives to its arrays.
     pub(super) fn give_elements(&mut self, chart: Option<ChartId>, decl: &VarDecl, ids: &[VarId]) {
         let Some(first) = ids.first() else { return };
-        let Some(count) =
-            self.scopes.arrays.iter().find(|a| a.first == *first && a.count > 0).map(|a| a.count as usize)
+        let Some(count) = self
+            .scopes
+            .arrays
+            .iter()
+            .find(|a| a.first == *first && a.count() > 0)
+            .map(|a| a.count() as usize)
         else {
             return;
         };
@@ -200,12 +215,7 @@ impl<'d> Resolver<'_, 'd> {
 
     /// The array that a path names, if it names one.
     pub(super) fn array_named(&self, names: &[Name]) -> Option<&Array> {
-        let entity = match names {
-            [name] => self.entity(&name.text),
-            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
-            _ => None,
-        };
-        match entity {
+        match self.named(names) {
             Some(Entity::Array(n)) => self.scopes.arrays.get(n as usize),
             _ => None,
         }
@@ -218,7 +228,7 @@ impl<'d> Resolver<'_, 'd> {
             let what = say!("`{}` is no array; it has no elements", path.text());
             return self.report(Problem::new(&codes::WRONG_KIND, at, what));
         };
-        if array.count == 0 {
+        if array.count() == 0 {
             return None; // Its declaration has been reported.
         }
         if index.len() != array.dimensions.len() {
@@ -356,7 +366,7 @@ impl<'d> Resolver<'_, 'd> {
                 say!("`{}` is an array; only an array of its bounds and type can be assigned", target.name);
             return Some(self.report(Problem::new(&codes::WRONG_TYPE, from.at.0, what)));
         };
-        if target.count == 0 || source.count == 0 {
+        if target.count() == 0 || source.count() == 0 {
             return Some(None); // Its declaration has been reported.
         }
         if target.dimensions != source.dimensions || target.ty != source.ty {
@@ -370,23 +380,12 @@ impl<'d> Resolver<'_, 'd> {
         let class = self.var(target.first).map(|v| v.class)?;
         self.may_write(target.first, class, at)?;
         let mut list = Vec::new();
-        for place in 0..target.count {
+        for place in 0..target.count() {
             let value = self.read(Ref::Var(VarId(source.first.0 + place)), at)?;
             let kind = StmtKind::Assign(Target::Var(VarId(target.first.0 + place)), value.expr);
             list.push(Stmt { kind, at });
         }
         Some(StmtKind::If(Vec::new(), list))
-    }
-}
-
-impl Array {
-    /// The element that indexes from 0 choose.
-    fn chosen(&self, indexes: Vec<Expr>) -> Element {
-        let places: Option<Vec<i64>> = indexes.iter().map(known).collect();
-        let all = Elements { first: self.first, counts: self.dimensions.iter().map(|(_, n)| *n).collect() };
-        let Some(places) = places else { return Element::Chosen(all, self.ty, indexes) };
-        let place = places.iter().zip(&all.counts).fold(0, |sum, (i, count)| sum * i64::from(*count) + i);
-        Element::Known(VarId(self.first.0 + place as u32))
     }
 }
 

@@ -122,6 +122,15 @@ impl Resolver<'_, '_> {
         }
     }
 
+    /// The meaning of `name` or `Chart.name`, steps aside.
+    pub(super) fn named(&self, names: &[Name]) -> Option<Entity> {
+        match names {
+            [name] => self.entity(&name.text),
+            [chart, name] => self.scopes.of_chart(self.scopes.chart(&chart.text)?, &name.text),
+            _ => None,
+        }
+    }
+
     fn value_of(&self, entity: Entity, k: usize) -> Result<Ref, Miss> {
         match entity {
             Entity::Var(v) => Ok(Ref::Var(v)),

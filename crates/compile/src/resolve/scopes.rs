@@ -65,9 +65,7 @@ pub(super) struct Array {
     pub(super) name: Box<str>,
     /// Its first element.
     pub(super) first: VarId,
-    /// The number of its elements; 0 if its declaration is wrong.
-    pub(super) count: u32,
-    /// The least index and the number of indexes of each dimension.
+    /// The least index and the number of indexes of each dimension; none if its declaration is wrong.
     pub(super) dimensions: Vec<(i64, u32)>,
     /// Type of the elements.
     pub(super) ty: Type,

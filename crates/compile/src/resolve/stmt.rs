@@ -456,12 +456,7 @@ impl Resolver<'_, '_> {
     #[allow(clippy::option_option, reason = "no instance, or an instance called wrongly")]
     fn instance_call(&mut self, path: &Path, args: &[Arg]) -> Option<Option<StmtKind>> {
         let last = path.names.last()?;
-        let entity = match path.names.as_slice() {
-            [name] => self.entity(&name.text),
-            [chart, name] => self.scopes.chart(&chart.text).and_then(|c| self.scopes.of_chart(c, &name.text)),
-            _ => None,
-        };
-        let Some(Entity::Var(v)) = entity else { return None };
+        let Some(Entity::Var(v)) = self.named(&path.names) else { return None };
         let Type::Fb(kind) = self.var(v)?.ty else { return None };
         Some(self.fb_call(v, kind, last, args))
     }

@@ -9,7 +9,7 @@ fn constant(ty: Type, bits: u64) -> String {
     format!("{ty}#16#{bits:X}")
 }
 
-/// A literal as a constant of the bit string that is needed.
+/// A whole number as a constant of a bit string type: `16` becomes `WORD#16#10`.
 pub(super) fn literal(text: &str, ty: Type) -> Option<String> {
     text.parse::<u64>().ok().map(|bits| constant(ty, bits))
 }
