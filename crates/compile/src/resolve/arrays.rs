@@ -12,6 +12,8 @@
 //! last index counting fastest (IEC 61131-3:2003, 2.4.1.2). An index outside of its bounds is a problem where it
 //! is known, and the fault `range` in a run.
 
+use std::collections::HashMap;
+
 use g7_model::{
     Array as Written, Expr as WrittenExpr, ExprKind as Form, Name, Path, Problem, Span, Type, VarDecl, codes,
     say,
@@ -103,6 +105,22 @@ impl<'d> Resolver<'_, 'd> {
             self.scopes.arrays.push(array);
         }
         ids
+    }
+
+    /// Reports a variable in back-ticks with the name of an element: tests, traces and io files could not tell them
+    /// apart.
+    pub(super) fn name_elements_once(&mut self) {
+        if self.scopes.arrays.is_empty() {
+            return;
+        }
+        let mut seen = HashMap::new();
+        let mut clashes = Vec::new();
+        for v in self.unit.vars.iter().filter(|v| v.name.ends_with(']')) {
+            if let Some(first) = seen.insert(&v.name, v.at) {
+                clashes.push((Name::new(v.name.clone(), v.at), first));
+            }
+        }
+        clashes.iter().for_each(|(name, first)| self.defined_twice(name, *first));
     }
 
     /// The bounds of each dimension; reports a problem if there can be no such array.

@@ -158,6 +158,7 @@ fn declare_names<'d>(r: &mut Resolver<'_, 'd>, doc: &'d Document, charts: &[&'d 
             }
         }
     }
+    r.name_elements_once();
     for (chart, decl, ids) in declared {
         r.give_values(chart, decl, &ids);
     }
