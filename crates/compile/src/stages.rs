@@ -3,9 +3,12 @@
 //! The root compiles the charts with it, and `plant` the program of a plant. No program comes out
 //! while a problem is an error, and problems that only follow from others are dropped.
 
+use std::borrow::Cow;
+use std::collections::HashSet;
 use std::sync::Arc;
 
 use g7_engine::{Code, Program};
+use g7_model::instances::instantiated;
 use g7_model::{Document, Expr, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
@@ -46,7 +49,34 @@ pub fn compile_with(
     profile: Option<ProfileName>,
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
+    let (instances, undone) = instantiated(doc);
+    if let Cow::Owned(charts) = &instances {
+        let (compiled, problems) = compile_charts(charts, undone, profile, queries);
+        return (compiled, once(doc, problems));
+    }
+    compile_charts(doc, undone, profile, queries)
+}
+
+/// A problem of a chart with parameters is told once, not for each instance.
+fn once(doc: &Document, mut problems: Vec<Problem>) -> Vec<Problem> {
+    let charts: Vec<Span> = doc.charts().filter(|c| !c.params.is_empty()).map(|c| c.at.0).collect();
+    let mut told = HashSet::new();
+    problems.retain(|p| {
+        let within = charts.iter().any(|c| c.start <= p.at.start && p.at.end <= c.end);
+        !within || told.insert((p.at, p.code.id))
+    });
+    problems
+}
+
+/// Compiles a document whose charts have no parameters.
+fn compile_charts(
+    doc: &Document,
+    mut undone: Vec<Problem>,
+    profile: Option<ProfileName>,
+    queries: &[Expr],
+) -> (Option<Compiled>, Vec<Problem>) {
     let (mut unit, mut scopes, mut problems) = resolve::resolve_open(doc, profile);
+    problems.append(&mut undone);
     let mut questions = Vec::new();
     for query in queries {
         let (expr, mut wrong) = resolve::resolve_query(&mut unit, &mut scopes, query, None, None);

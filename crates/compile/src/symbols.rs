@@ -115,6 +115,8 @@ pub struct MacroSymbol {
     pub name: Box<str>,
     /// The same with its chart: `G.M3`.
     pub path: Box<str>,
+    /// The name of the chart that it stands in.
+    pub chart: Box<str>,
     /// The steps of its expansion: it is active while one of them is.
     pub group: GroupId,
     /// The step that carries the actions and the time of the macro-step, if it has any.
@@ -155,6 +157,12 @@ pub struct Symbols {
     pub(crate) step_names: Names,
     /// By step: chart and name.
     pub(crate) step_paths: Names,
+    /// By step: its chart in [`Symbols::chart_names`].
+    pub(crate) step_charts: Vec<u32>,
+    /// By transition: its chart in [`Symbols::chart_names`].
+    pub(crate) transition_charts: Vec<u32>,
+    /// The names of all charts, expansions and tasks; of an instance its own, `Axis[3]`.
+    pub(crate) chart_names: Vec<Box<str>>,
     /// By step: where its name stands.
     pub(crate) step_places: Vec<Span>,
     /// By step: it stands for a macro-step.
@@ -209,6 +217,20 @@ impl Symbols {
     /// A step's name with its chart: `G.5`, `G.M3.E`.
     pub fn step_path(&self, step: StepId) -> &str {
         self.step_paths.get(step.0 as usize)
+    }
+
+    /// The name of the chart, expansion or task with a step; `Axis[3]` for that of an instance.
+    pub fn step_chart(&self, step: StepId) -> &str {
+        self.chart_name(self.step_charts.get(step.0 as usize))
+    }
+
+    /// The same of a transition, by rank.
+    pub fn transition_chart(&self, rank: u32) -> &str {
+        self.chart_name(self.transition_charts.get(rank as usize))
+    }
+
+    fn chart_name(&self, chart: Option<&u32>) -> &str {
+        chart.and_then(|c| self.chart_names.get(*c as usize)).map_or("", |name| name)
     }
 
     /// Where a step's name stands.

@@ -95,7 +95,7 @@ fn title(nesting: &Nesting<'_>, drawing: &Drawing) -> Picture {
             format!("{} = {}", short(step), short(name))
         }
         (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => short(&chart.name.text),
-    };
+    } + &parameters(chart);
     let (mut x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
     if let Some(step) = nesting.enclosing.get(&*drawing.chart) {
         let (step, _) = shortened(&clean(step), SUBTITLE, 2000);
@@ -112,6 +112,12 @@ fn title(nesting: &Nesting<'_>, drawing: &Drawing) -> Picture {
         p.rect("g7-frame", all.x - 150, all.y - 120, all.w + 300, all.h + 270);
     }
     p
+}
+
+/// `(i, speed)`, the names of the parameters.
+fn parameters(chart: &Chart) -> String {
+    let names: Vec<&str> = chart.params.iter().map(|p| &*p.name.text).collect();
+    if names.is_empty() { String::new() } else { short(&format!("({})", names.join(", "))) }
 }
 
 fn short(name: &str) -> String {

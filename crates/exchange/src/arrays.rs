@@ -86,6 +86,7 @@ impl<'d> Single<'d> {
                 made.arrays.insert((made.chart, &name.text), elements);
             }
         }
+        made.chart = None;
         made
     }
 

@@ -4,6 +4,7 @@
 
 use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
+use g7_model::instances::instantiated;
 use g7_model::{Document, FileId, Problem};
 
 use crate::{arrays, classicladder, controlexpert, jgrafchart, l5x, mermaid, s7graph, xmi};
@@ -159,12 +160,12 @@ impl Format {
     /// Writes a document, which must have been read without errors; None if the format is not
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
-        self.writer.map(|write| write(&arrays::singled(document)))
+        self.writer.map(|write| write(&arrays::singled(&instantiated(document).0)))
     }
 
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
-        self.in_dialect.map(|write| write(&arrays::singled(document), dialect))
+        self.in_dialect.map(|write| write(&arrays::singled(&instantiated(document).0), dialect))
     }
 }
 

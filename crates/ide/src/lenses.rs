@@ -45,6 +45,7 @@ pub fn lenses(readable: &Readable<'_>) -> Vec<Lens> {
             | Item::Cycle(..)
             | Item::Target(..)
             | Item::Var(_)
+            | Item::Instance(_)
             | Item::Action(_)
             | Item::Section(_)
             | Item::Function(_)

@@ -1,6 +1,8 @@
 //! The names that a document defines, and their meaning.
 
-use g7_model::{Chart, ChartItem, Document, Item, Name, PlantItem, Said, Span, Step, VarDecl, say};
+use g7_model::{
+    Chart, ChartItem, Document, InstanceNames, Item, Name, PlantItem, Said, Span, Step, VarDecl, say,
+};
 use g7_syntax::{Token, TokenKind};
 
 /// The meaning of a name.
@@ -35,6 +37,11 @@ pub fn names(document: &Document) -> Vec<Named<'_>> {
         match item {
             Item::Var(v) => variable(v, None, &mut all),
             Item::Chart(c) => chart(c, &mut all),
+            Item::Instance(i) => {
+                if let InstanceNames::One(name) = &i.names {
+                    other(name, "instance", i.comment.as_deref(), None, &mut all);
+                }
+            }
             Item::Action(a) => other(&a.name, "action", a.comment.as_deref(), None, &mut all),
             Item::Section(s) => other(&s.name, "transition section", None, None, &mut all),
             Item::Function(f) => {
@@ -80,6 +87,7 @@ fn other<'d>(
 fn chart<'d>(c: &'d Chart, all: &mut Vec<Named<'d>>) {
     all.push(Named { name: &c.name, meaning: Meaning::Chart(c), scope: None });
     let scope = Some(c.at.0);
+    c.params.iter().for_each(|p| other(&p.name, "parameter", None, scope, all));
     for item in &c.items {
         match item {
             ChartItem::Var(v) => variable(v, Some(c), all),

@@ -2,7 +2,10 @@
 
 use std::ops::Range;
 
-use g7_model::{Chart, ChartItem, Item, Name, Plant, PlantItem, Property, Said, Span, VarDecl, say};
+use g7_model::{
+    Chart, ChartItem, Instance, InstanceNames, Item, Name, Plant, PlantItem, Property, Said, Span, VarDecl,
+    say,
+};
 
 use crate::file::Readable;
 use crate::tables::{class, declaration, kind};
@@ -53,6 +56,7 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
     match item {
         Item::Var(v) => variables(v),
         Item::Chart(c) => vec![chart(c)],
+        Item::Instance(i) => instance(i),
         Item::Action(a) => {
             vec![entry(&a.name, Kind::Function, detail(a.comment.as_deref(), || say!("action")), a.at.0)]
         }
@@ -70,6 +74,12 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
         | Item::Post(..)
         | Item::Layout(_) => Vec::new(),
     }
+}
+
+/// An instance with a name of its own; those of a range stand below the one chart.
+fn instance(i: &Instance) -> Vec<Entry> {
+    let InstanceNames::One(name) = &i.names else { return Vec::new() };
+    vec![entry(name, Kind::Chart, say!("instance of `{}`", i.chart.text), i.at.0)]
 }
 
 /// A property has no name; its text stands for it.

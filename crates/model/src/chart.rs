@@ -1,7 +1,9 @@
 //! Documents, charts, steps and transitions.
 
 use crate::words::Told;
-use crate::{Action, Block, Body, Expr, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type};
+use crate::{
+    Action, Arg, Block, Body, Expr, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type,
+};
 
 /// All of one file.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -42,6 +44,8 @@ pub enum Item {
     Var(VarDecl),
     /// A chart, an expansion or a task.
     Chart(Chart),
+    /// `instance Axis[1..6]`.
+    Instance(Instance),
     /// `action Pump { … }`.
     Action(NamedAction),
     /// `transition section …`.
@@ -253,6 +257,8 @@ pub struct Chart {
     pub kind: ChartKind,
     /// Its name.
     pub name: Name,
+    /// Its parameters. A chart that has some runs only as its instances, see [`Instance`].
+    pub params: Vec<Param>,
     /// `"…"`.
     pub comment: Option<Box<str>>,
     /// `every 20ms`: the period of its evolutions.
@@ -261,6 +267,30 @@ pub struct Chart {
     pub items: Vec<ChartItem>,
     /// Where it stands.
     pub at: Place,
+}
+
+/// Charts that run: those of a chart with parameters, each with values of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Instance {
+    /// The chart with parameters.
+    pub chart: Name,
+    /// How the instances are named.
+    pub names: InstanceNames,
+    /// The values of the parameters, by name or in their order; without the first one in a range.
+    pub args: Vec<Arg>,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// Where it stands.
+    pub at: Place,
+}
+
+/// The names of instances.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum InstanceNames {
+    /// `instance Lift : Axis(7)`: one, with a name of its own.
+    One(Name),
+    /// `instance Axis[1..6]`: `Axis[1]` to `Axis[6]`; the number is the value of the first parameter.
+    Range(Box<Expr>, Box<Expr>),
 }
 
 /// An item of a chart.
@@ -450,6 +480,7 @@ impl Item {
             Item::Cycle(_, at) | Item::Target(_, at) | Item::Pre(_, at) | Item::Post(_, at) => at.0,
             Item::Var(v) => v.at.0,
             Item::Chart(c) => c.at.0,
+            Item::Instance(i) => i.at.0,
             Item::Action(a) => a.at.0,
             Item::Section(s) => s.at.0,
             Item::Function(f) => f.at.0,

@@ -28,6 +28,7 @@ pub mod codes;
 mod expr;
 mod fix;
 mod functions;
+pub mod instances;
 mod language;
 mod name;
 mod nanos;
@@ -49,15 +50,16 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Array, Chart, ChartItem, ChartKind, Document, Function, Item, Layout, NamedAction, Note, PlaceAt, Placed,
-    Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl, VarKind,
+    Array, Chart, ChartItem, ChartKind, Document, Function, Instance, InstanceNames, Item, Layout,
+    NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
+    Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path};
 pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;
 pub use language::Language;
-pub use name::{Name, Param};
+pub use name::{Index, Name, Param, instance_of};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};

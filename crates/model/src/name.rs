@@ -20,7 +20,40 @@ impl Name {
     }
 }
 
-/// A parameter of a function, or an attribute of a part.
+/// The number in the name of an instance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Index<'n> {
+    /// `Axis[3]`.
+    Number(i64),
+    /// `Axis[i + 1]`, `Axis[i]`: a parameter, and the number added to it.
+    Parameter(&'n str, i64),
+}
+
+/// Takes the name of an instance of a range apart: the chart with parameters, and the number. None for other names.
+pub fn instance_of(name: &str) -> Option<(&str, Index<'_>)> {
+    let (chart, inner) = name.strip_suffix(']')?.rsplit_once('[')?;
+    let index = match inner.parse() {
+        Ok(number) => Index::Number(number),
+        Err(_) => {
+            let mut parts = inner.split(' ');
+            let parameter = parts.next()?;
+            let added = match (parts.next(), parts.next(), parts.next()) {
+                (None, ..) => 0,
+                (Some("+"), Some(n), None) => n.parse().ok()?,
+                (Some("-"), Some(n), None) => n.parse::<i64>().ok()?.checked_neg()?,
+                _ => return None,
+            };
+            let plain = |c: char| c.is_alphanumeric() || c == '_';
+            if !parameter.starts_with(|c: char| !c.is_numeric()) || !parameter.chars().all(plain) {
+                return None;
+            }
+            Index::Parameter(parameter, added)
+        }
+    };
+    (!chart.is_empty()).then_some((chart, index))
+}
+
+/// A parameter of a function or chart, or an attribute of a part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Param {
     /// Its name.

@@ -5,11 +5,11 @@
 
 use crate::{
     Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
-    ChartItem, ChartKind, Document, Drive, Expr, ExprKind, Fix, Function, Item, Layout, Literal, Local, Name,
-    NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt, Placed, Plant, PlantItem, Profile,
-    ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario, Section, Situation, Span, StateVar,
-    Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition,
-    Type, UnaryOp, VarDecl, VarKind, View, Work,
+    ChartItem, ChartKind, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames, Item,
+    Layout, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt,
+    Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario,
+    Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt,
+    TestStmtKind, TextEdit, Transition, Type, UnaryOp, VarDecl, VarKind, View, Work,
 };
 
 /// A part of a document that has places in a text.
@@ -113,12 +113,13 @@ structs! {
     Binding { element, attribute, value }
     Block { locals, statements, at }
     CaseArm { labels, body }
-    Chart { kind, name, comment, every, items, at }
+    Chart { kind, name, params, comment, every, items, at }
     Document { items, notes }
     Drive { input, value, at }
     Expr { kind, at }
     Fix { label, edits, sure }
     Function { name, params, result, body, at }
+    Instance { chart, names, args, comment, at }
     Layout { chart, places, at }
     Local { names, ty, init, at }
     Name { text, at }
@@ -170,7 +171,9 @@ enums! {
     Item {
         Profile(part), Cycle(time, at), Target(plc, at), Var(part), Chart(part), Action(part), Section(part),
         Function(part), Pre(body, at), Post(body, at), Plant(part), Test(part), Prove(part), Layout(part),
+        Instance(part),
     }
+    InstanceNames { One(name), Range(least, most) }
     Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Str(text) }
     Order { Force(name, situation), Enable(name), Mask(name), Call(name), Enclose(name) }
     Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text) }

@@ -7,8 +7,9 @@
 use std::slice::from_ref;
 
 use crate::{
-    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Order,
-    Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt, TestStmtKind, VarDecl, Work,
+    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Instance,
+    InstanceNames, Item, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt,
+    TestStmtKind, VarDecl, Work,
 };
 
 /// Receives every name of a document; the methods that visit an element visit all within it.
@@ -53,6 +54,7 @@ pub trait Visitor<'d> {
             Item::Plant(p) => p.items.iter().for_each(|i| self.plant_item(i)),
             Item::Test(t) => t.body.iter().for_each(|s| self.test(s)),
             Item::Prove(p) => self.property(&p.kind),
+            Item::Instance(i) => self.instance(i),
             Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Layout(_) => {}
         }
     }
@@ -60,6 +62,14 @@ pub trait Visitor<'d> {
     /// The values of a declaration.
     fn variable(&mut self, v: &'d VarDecl) {
         self.exprs(v.array.iter().flat_map(|a| a.bounds()).chain(&v.init).chain(&v.safe));
+    }
+
+    /// The bounds and the values of parameters of instances.
+    fn instance(&mut self, instance: &'d Instance) {
+        if let InstanceNames::Range(least, most) = &instance.names {
+            self.exprs([&**least, &**most]);
+        }
+        self.exprs(instance.args.iter().map(|a| &a.value));
     }
 
     /// All items of a chart, except for the names that they declare and the steps of transitions.

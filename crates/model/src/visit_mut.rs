@@ -2,8 +2,8 @@
 //! them. `visit` is the one that only reads.
 
 use crate::{
-    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Path, Span, Stmt,
-    StmtKind, Target, Work,
+    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Order, Path,
+    Span, StepKind, Stmt, StmtKind, Target, Work,
 };
 
 /// How a variable is named.
@@ -25,6 +25,12 @@ pub trait Visitor {
     fn expr(&mut self, _expr: &mut Expr) {}
     /// A name, and how it is used.
     fn path(&mut self, _path: &mut Path, _how: Use, _at: Span) {}
+    /// The name of another chart: in an order, or of the expansion of a macro-step.
+    fn chart_name(&mut self, _name: &mut Name) {}
+    /// True if the statements of bodies in other languages than Structured Text are visited as well.
+    fn all_bodies(&self) -> bool {
+        false
+    }
 }
 
 /// Visits all of a document.
@@ -40,10 +46,16 @@ pub fn document(document: &mut Document, v: &mut impl Visitor) {
     }
 }
 
-fn chart(chart: &mut Chart, v: &mut impl Visitor) {
+/// Visits all of a chart except for the declarations of its variables.
+pub fn chart(chart: &mut Chart, v: &mut impl Visitor) {
     for item in &mut chart.items {
         match item {
-            ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| action(a, v)),
+            ChartItem::Step(s) => {
+                if let StepKind::Macro(expansion) = &mut s.kind {
+                    v.chart_name(expansion);
+                }
+                s.actions.iter_mut().for_each(|a| action(a, v));
+            }
             ChartItem::Transition(t) => {
                 expr(&mut t.receptivity, v);
                 t.on_clearing.iter_mut().for_each(|b| block(b, v));
@@ -76,7 +88,15 @@ fn action(action: &mut Action, v: &mut impl Visitor) {
             work(w, v);
             condition.iter_mut().for_each(|e| expr(e, v));
         }
-        ActionKind::Order(_) | ActionKind::Comment(_) => {}
+        ActionKind::Order(order) => {
+            let (Order::Force(name, _)
+            | Order::Enable(name)
+            | Order::Mask(name)
+            | Order::Call(name)
+            | Order::Enclose(name)) = order;
+            v.chart_name(name);
+        }
+        ActionKind::Comment(_) => {}
     }
 }
 
@@ -88,12 +108,15 @@ fn work(work: &mut Work, v: &mut impl Visitor) {
 }
 
 fn body(body: &mut Body, v: &mut impl Visitor) {
-    if let Body::St(b) = body {
-        block(b, v);
+    match body {
+        Body::St(b) => block(b, v),
+        Body::Other(_, _, b) if v.all_bodies() => block(b, v),
+        Body::Other(..) => {}
     }
 }
 
 fn block(block: &mut Block, v: &mut impl Visitor) {
+    block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| expr(e, v));
     stmts(&mut block.statements, v);
 }
 

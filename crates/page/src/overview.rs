@@ -64,6 +64,10 @@ struct ChartRow {
     to: usize,
     steps: usize,
     transitions: usize,
+    /// The names of its parameters.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "types", ts(as = "Option<Vec<String>>"))]
+    params: Vec<String>,
     /// The chart and the step that this chart is the expansion of, or that enclose it.
     #[serde(skip_serializing_if = "Option::is_none")]
     of: Option<[String; 2]>,
@@ -146,6 +150,7 @@ fn charts(file: &File) -> Vec<ChartRow> {
             to,
             steps: c.steps().count(),
             transitions: c.transitions().count(),
+            params: c.params.iter().map(|p| p.name.text.to_string()).collect(),
             of: owner(document, &c.name.text),
         }
     };

@@ -1,6 +1,6 @@
 //! Arrays: an element is the variable whose name has the indexes behind it, as in `a[1,2]`.
 
-use g7_model::{Expr, ExprKind, Name, Path, VarDecl, VarKind};
+use g7_model::{Expr, ExprKind, Name, Path, VarDecl};
 
 use super::exec::Exec;
 use super::model::{FILE, Model, ScopeId};
@@ -29,11 +29,11 @@ fn values(init: Option<&Expr>) -> Vec<Expr> {
 
 impl Model {
     /// The variables that a declaration stands for: one for each element, or the one itself.
-    pub(super) fn singles(&self, v: &VarDecl) -> Vec<VarDecl> {
+    pub(super) fn singles(&self, scope: ScopeId, v: &VarDecl) -> Vec<VarDecl> {
         let Some(array) = &v.array else { return vec![v.clone()] };
         let mut all: Vec<Vec<i128>> = vec![Vec::new()];
         for (least, most) in &array.dimensions {
-            let (least, most) = (self.bound(least), self.bound(most));
+            let (least, most) = (self.bound(scope, least), self.bound(scope, most));
             all =
                 all.iter().flat_map(|before| (least..=most).map(|n| [&before[..], &[n]].concat())).collect();
         }
@@ -51,14 +51,14 @@ impl Model {
         all.iter().enumerate().map(single).collect()
     }
 
-    fn bound(&self, e: &Expr) -> i128 {
-        let named = |path: &Path| {
-            let constants = self.vars.iter().filter(|v| v.kind == VarKind::Const);
-            let mut named = constants.filter(|v| v.qualified.rsplit('.').next() == Some(&path.text()));
-            named.next().and_then(|v| v.init.as_ref()?.kind.whole())
+    /// A number, or that of a constant that is seen from a scope.
+    fn bound(&self, scope: ScopeId, e: &Expr) -> i128 {
+        let constant = |path: &Path| {
+            let v = self.variable_named(scope, &path.text())?;
+            self.vars[v].init.as_ref()?.kind.whole()
         };
         match &e.kind {
-            ExprKind::Path(path) => named(path),
+            ExprKind::Path(path) => constant(path),
             kind => kind.whole(),
         }
         .expect("a bound")
@@ -69,7 +69,7 @@ impl Model {
         let own = |s: ScopeId, name: &str| self.scopes[s].arrays.get(name).map(Vec::as_slice);
         match &path.names[..] {
             [name] => own(scope, &name.text).or_else(|| own(FILE, &name.text)),
-            [chart, name] => own(self.chart_named(&chart.text)?, &name.text),
+            [chart, name] => own(self.chart_named(scope, &chart.text)?, &name.text),
             _ => None,
         }
     }
@@ -120,7 +120,7 @@ impl Exec<'_> {
     /// The element that an action drives; its indexes are written numbers or constants.
     pub(super) fn known_element(m: &Model, scope: ScopeId, e: &Expr) -> Run<Ref> {
         let ExprKind::Element(path, index, None) = &e.kind else { return bad("no element") };
-        let indexes: Vec<i128> = index.iter().map(|e| m.bound(e)).collect();
+        let indexes: Vec<i128> = index.iter().map(|e| m.bound(scope, e)).collect();
         m.resolve(scope, &element(path, &indexes)).ok_or(NaiveFault::Index)
     }
 }

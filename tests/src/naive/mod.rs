@@ -11,6 +11,7 @@ mod evolve;
 mod exec;
 mod fb;
 mod force;
+mod instances;
 mod model;
 mod resolve;
 mod sample;

@@ -9,6 +9,7 @@ use g7_model::{
     VarDecl, VarKind,
 };
 
+use super::instances::{charts_of, numbered};
 use super::value::{Run, bad};
 
 pub(super) type ScopeId = usize;
@@ -87,6 +88,8 @@ pub(super) struct Scope {
     pub(super) root: ScopeId,
     pub(super) steps: Vec<StepId>,
     pub(super) by_name: BTreeMap<String, StepId>,
+    /// Of an instance: the parameters that are whole numbers.
+    pub(super) numbers: BTreeMap<String, i128>,
     pub(super) transitions: Vec<TransId>,
     pub(super) vars: BTreeMap<String, VarId>,
     /// The indexes of the elements of each array, as in `[1,2]`.
@@ -185,9 +188,13 @@ impl Model {
             blocked_vars: BTreeSet::new(),
             order: Vec::new(),
         };
-        for chart in doc.charts() {
-            let id = model.scopes.len();
-            model.scopes.push(Scope::new(&chart.name.text, chart.kind, chart.every.map(Nanos::count), id));
+        for item in &doc.items {
+            for made in charts_of(doc, item)? {
+                let (id, chart) = (model.scopes.len(), made.chart);
+                let every = chart.every.map(Nanos::count);
+                let numbers = made.numbers();
+                model.scopes.push(Scope { numbers, ..Scope::new(&made.name, chart.kind, every, id) });
+            }
         }
         model.read_items(doc)?;
         model.link_expansions()?;
@@ -205,9 +212,12 @@ impl Model {
         for item in &doc.items {
             match item {
                 Item::Var(v) => self.declare(FILE, v),
-                Item::Chart(c) => {
-                    self.read_chart(next_chart, c)?;
-                    next_chart += 1;
+                Item::Chart(_) | Item::Instance(_) => {
+                    for made in charts_of(doc, item)? {
+                        made.constants.iter().for_each(|v| self.declare(next_chart, v));
+                        self.read_chart(next_chart, made.chart)?;
+                        next_chart += 1;
+                    }
                 }
                 Item::Action(a) => {
                     self.scopes[FILE].actions.insert(a.name.text.to_string(), a.clone());
@@ -233,7 +243,7 @@ impl Model {
     }
 
     fn declare(&mut self, scope: ScopeId, v: &VarDecl) {
-        for single in self.singles(v) {
+        for single in self.singles(scope, v) {
             self.declare_single(scope, &single);
             for (name, element) in v.names.iter().zip(&single.names).filter(|_| v.array.is_some()) {
                 let indexes = element.text[name.text.len()..].to_owned();
@@ -324,14 +334,19 @@ impl Model {
         }
     }
 
-    pub(super) fn chart_named(&self, name: &str) -> Option<ScopeId> {
+    /// The chart with this name as one in `scope` writes it.
+    pub(super) fn chart_named(&self, scope: ScopeId, name: &str) -> Option<ScopeId> {
+        let name = numbered(name, &self.scopes[scope].numbers);
         (FILE + 1..self.scopes.len()).find(|&s| self.scopes[s].name == name)
     }
 
     fn link_expansions(&mut self) -> Run<()> {
         for id in 0..self.steps.len() {
             let StepKind::Macro(name) = self.steps[id].kind.clone() else { continue };
-            let Some(scope) = self.chart_named(&name.text) else { return bad(format!("no {}", name.text)) };
+            let home = self.steps[id].scope;
+            let Some(scope) = self.chart_named(home, &name.text) else {
+                return bad(format!("no {}", name.text));
+            };
             if self.scopes[scope].macro_step.is_some() || self.scopes[scope].kind != ChartKind::Expansion {
                 return bad(format!("{} cannot expand {}", name.text, self.steps[id].name));
             }
@@ -369,7 +384,7 @@ impl Model {
         | Order::Mask(name)
         | Order::Call(name)
         | Order::Enclose(name)) = &order;
-        let Some(chart) = self.chart_named(&name.text) else {
+        let Some(chart) = self.chart_named(self.steps[step].scope, &name.text) else {
             if let Order::Mask(name) = &order
                 && let Some(var) = self.variable_named(self.steps[step].scope, &name.text)
             {
@@ -495,6 +510,7 @@ impl Scope {
             root,
             steps: Vec::new(),
             by_name: BTreeMap::new(),
+            numbers: BTreeMap::new(),
             transitions: Vec::new(),
             vars: BTreeMap::new(),
             arrays: BTreeMap::new(),

@@ -30,7 +30,7 @@ impl Model {
             return Some(found);
         }
         let (&first, rest) = names.split_first()?;
-        if let Some(chart) = self.chart_named(first)
+        if let Some(chart) = self.chart_named(scope, first)
             && !rest.is_empty()
         {
             return self.variable_in(chart, rest).or_else(|| self.step_in(chart, rest));
@@ -123,7 +123,7 @@ impl Model {
         match &path.names[..] {
             [step] => self.scopes[scope].by_name.get(&*step.text).copied(),
             [chart, step] => {
-                let chart = self.chart_named(&chart.text)?;
+                let chart = self.chart_named(scope, &chart.text)?;
                 self.scopes[chart].by_name.get(&*step.text).copied()
             }
             _ => None,

@@ -238,7 +238,9 @@ impl Exec<'_> {
                 Ok(())
             }
             service @ ("INITCHART" | "CLEARCHART" | "FREEZECHART") => {
-                let chart = arg_path(0).and_then(|p| self.m.chart_named(&p.text()));
+                let instance = args.first().and_then(|a| a.value.kind.variable());
+                let named = arg_path(0).map(|p| p.text()).or(instance);
+                let chart = named.and_then(|name| self.m.chart_named(scope, &name));
                 let Some(chart) = chart else { return bad(format!("{service} of no chart")) };
                 let request = match service {
                     "INITCHART" => Request::Init(chart),

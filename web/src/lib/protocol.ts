@@ -77,6 +77,8 @@ export type ChartRow = {
   to: number;
   steps: number;
   transitions: number;
+  /** The names of its parameters. */
+  params?: Array<string>;
   /** The chart and the step that this chart is the expansion of, or that enclose it. */
   of?: [string, string];
 };
@@ -665,8 +667,17 @@ export type Redrawn = {
 
 export type Related = { from: number; to: number; what: string };
 
+/** A symbol of a drawing in a run. */
+export type RunPart = {
+  /** The id of the symbol. */
+  id: string;
+  /** The instance that it belongs to, `Axis[3]`, if its chart has parameters: then several parts have one symbol. */
+  instance?: string;
+};
+
 export type RunStep = {
   id: string;
+  instance?: string;
   name: string;
   chart: string;
   /** The name of the signal of its activity. */
@@ -722,7 +733,7 @@ export type Started = {
   period_ms: number;
   signals: Array<SignalRow>;
   steps: Array<RunStep>;
-  transitions: Array<TransitionRow>;
+  transitions: Array<RunPart>;
   plant?: string;
   view?: View;
   /** The fingerprint of the text that runs, as in the overview of a file. */
@@ -795,8 +806,6 @@ export type Text = { text: string };
 
 /** A language of controllers. */
 export type Tongue = 'st' | 'il' | 'ld';
-
-export type TransitionRow = { id: string };
 
 /** The classes of variables. */
 export type VariableClass = 'input' | 'output' | 'var' | 'const';

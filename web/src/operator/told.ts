@@ -1,5 +1,6 @@
 // The messages of a running controller, as `crates/g7/src/operator/board.rs` writes them. Times are
 // seconds of the controller's clock.
+import type { Part as RunPart } from '../lib/instances.svelte';
 
 export interface Signal {
   name: string;
@@ -31,8 +32,7 @@ export interface View {
   bindings: { element: string; attribute: string; known: boolean }[];
 }
 
-export interface Step {
-  id: string;
+export interface Step extends RunPart {
   name: string;
   chart: string;
   comment?: string | null;
@@ -49,7 +49,7 @@ export interface Description {
   plant?: string | null;
   signals: Signal[];
   steps: Step[];
-  transitions: string[];
+  transitions: RunPart[];
   devices: { name: string; kind: string; place: string }[];
   picture?: View | null;
   force: { usual_s: number; longest_s: number; most: number };

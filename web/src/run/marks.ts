@@ -2,6 +2,7 @@
 import { live } from '../lib/live.svelte';
 import type { Item } from '../lib/protocol';
 import { transitionNumber } from '../lib/ids';
+import { choices, isShown, type Chosen } from '../lib/instances.svelte';
 import type { Run } from './state.svelte';
 
 const GAP = 40;
@@ -19,15 +20,18 @@ const MANY = 40;
 /** The signals that a symbol names, by the id of the symbol. */
 export type Named = ReadonlyMap<string, readonly number[]>;
 
-/** Finds the names of signals in the texts of symbols. */
-export function named(signals: readonly { name: string }[], chart: string, items: readonly Item[]): Named {
+/** Finds the names of signals in the texts of symbols; `chart` is the name in the program, of an instance its
+ * own, and `parameter` the first parameter of the chart. */
+export function named(signals: readonly { name: string }[], chart: string, items: readonly Item[], parameter?: string): Named {
   const byName = new Map(signals.map((s, i) => [s.name, i]));
   const found = new Map<string, number[]>();
+  // An element of an array is named by its index, or by the parameter that is the number of the instance.
+  const number = parameter ? /\[(-?\d+)\]$/.exec(chart)?.[1] : undefined;
   for (const item of items) {
     if (!item.source) continue;
     const signals = new Set<number>();
-    for (const word of item.source.matchAll(/`([^`]+)`|[\p{L}_][\p{L}\p{N}_.]*/gu)) {
-      const name = word[1] ?? word[0];
+    for (const word of item.source.matchAll(/`([^`]+)`|[\p{L}_][\p{L}\p{N}_.]*(?:\[[^\]]*\])?/gu)) {
+      const name = word[1] ?? (number === undefined ? word[0] : word[0].replace(`[${parameter}]`, `[${number}]`));
       const signal = byName.get(`${chart}.${name}`) ?? byName.get(name);
       if (signal !== undefined) signals.add(signal);
     }
@@ -50,6 +54,7 @@ export function age(ms: number, grain = 0): string {
 
 export class Marks {
   readonly #run: Run;
+  readonly #chosen: Chosen = (chart) => choices.of(this.#run.file, chart, this.#run.instances);
   #names: Named = new Map();
   /** For each step its actions that name signals. */
   #actions = new Map<string, string[]>();
@@ -116,7 +121,9 @@ export class Marks {
     const times = new Map<string, string>();
     const grain = run.playing ? READABLE * Math.min(1, run.speed) : 0;
     for (const i of run.active) {
-      const id = steps[i]?.id;
+      const step = steps[i];
+      if (!isShown(step, this.#chosen)) continue;
+      const id = step.id;
       if (!id) continue;
       on.add(id);
       const ms = run.times.get(i);
@@ -124,8 +131,8 @@ export class Marks {
     }
     const enabled = new Map<string, 0 | 1 | 2>();
     for (const [i, how] of run.enabled) {
-      const id = transitions[i]?.id;
-      if (id) enabled.set(id, how);
+      const transition = transitions[i];
+      if (isShown(transition, this.#chosen)) enabled.set(transition.id, how);
     }
     live.on = on;
     live.times = times;
@@ -139,8 +146,8 @@ export class Marks {
   #flash(): void {
     const now = performance.now();
     for (const i of this.#run.cleared) {
-      const id = this.#run.started.transitions[i]?.id;
-      if (id) this.#flashes.set(id, now + (this.#flashes.size < MANY ? FLASH : BRIEF));
+      const transition = this.#run.started.transitions[i];
+      if (isShown(transition, this.#chosen)) this.#flashes.set(transition.id, now + (this.#flashes.size < MANY ? FLASH : BRIEF));
     }
     this.#run.cleared.clear();
     for (const [id, until] of this.#flashes) if (until < now) this.#flashes.delete(id);
@@ -178,8 +185,8 @@ export class Marks {
     }
     const others = new Set<string>();
     for (const i of this.#other?.active ?? []) {
-      const id = this.#other?.started.steps[i]?.id;
-      if (id && !on.has(id)) others.add(id);
+      const step = this.#other?.started.steps[i];
+      if (isShown(step, this.#chosen) && step.id && !on.has(step.id)) others.add(step.id);
     }
     if (others.size > 0 || live.others.size > 0) live.others = others;
     live.otherName = this.#other?.started.profile ?? '';

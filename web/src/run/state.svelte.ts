@@ -1,5 +1,6 @@
 // One run as the page knows it: the merged frames. Frames contain only changes; the data of the
 // tables is kept by signal and by step, so that a changed value affects one row only.
+import { instancesOf } from '../lib/instances.svelte';
 import type { Door } from '../lib/page';
 import type { Frame, SignalRow, Started } from '../lib/protocol';
 
@@ -20,6 +21,8 @@ export class Run {
   readonly shared: boolean;
   readonly answers: Door;
   started: Started = $state.raw(undefined as unknown as Started);
+  /** The instances of each chart with parameters. */
+  readonly instances = $derived(instancesOf(this.started.steps));
 
   /** The shown values, by signal. */
   shows: string[] = $state([]);

@@ -14,8 +14,8 @@ use crate::ir::{ActionKind, Chart, ChartRole, Service, StepId, StepSort, StmtKin
 #[inline(never)]
 pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     let unit = facts.unit;
-    for (i, chart) in unit.charts.iter().enumerate() {
-        if chart.role == ChartRole::Unused || chart.enclosed_by.is_some() || driven(unit, i) {
+    for (chart, driven) in unit.charts.iter().zip(driven(unit)) {
+        if chart.role == ChartRole::Unused || chart.enclosed_by.is_some() || driven {
             continue;
         }
         dead_ends(facts, chart, problems);
@@ -30,21 +30,27 @@ pub(super) fn check(facts: &Facts<'_>, problems: &mut Vec<Problem>) {
     }
 }
 
-/// True if a chart is not moved by its transitions alone: an order forces, enables or masks it, or a statement
-/// sets its steps.
+/// The charts that are not moved by their transitions alone: an order forces, enables or masks them, or a statement
+/// sets their steps.
 #[inline(never)]
-fn driven(unit: &Unit, chart: usize) -> bool {
-    let forced = unit.steps.iter().flat_map(|s| &s.actions).any(|a| {
-        matches!(&a.kind, ActionKind::Force(c, _) | ActionKind::Enable(c) | ActionKind::MaskChart(c) if c.index() == chart)
-    });
-    forced
-        || statements(unit).into_iter().any(|s| match &s.kind {
+fn driven(unit: &Unit) -> Vec<bool> {
+    let mut driven = vec![false; unit.charts.len()];
+    for action in unit.steps.iter().flat_map(|s| &s.actions) {
+        if let ActionKind::Force(c, _) | ActionKind::Enable(c) | ActionKind::MaskChart(c) = &action.kind {
+            driven.get_mut(c.index()).into_iter().for_each(|d| *d = true);
+        }
+    }
+    for s in statements(unit) {
+        match &s.kind {
             StmtKind::Service(Service::SetStep(step)) => {
-                unit.steps.get(step.index()).is_some_and(|s| s.chart.index() == chart)
+                let chart = unit.steps.get(step.index()).map_or(usize::MAX, |s| s.chart.index());
+                driven.get_mut(chart).into_iter().for_each(|d| *d = true);
             }
-            StmtKind::Service(_) => true,
-            _ => false,
-        })
+            StmtKind::Service(_) => driven.fill(true),
+            _ => {}
+        }
+    }
+    driven
 }
 
 /// Steps that no transition follows, in a chart that otherwise goes round: some step of it comes

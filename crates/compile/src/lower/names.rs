@@ -79,12 +79,14 @@ impl Lower<'_> {
         for step in &unit.steps {
             *count.entry(&step.name).or_default() += 1;
         }
+        s.chart_names = unit.charts.iter().map(|c| c.name.clone()).collect();
         let unique = |name: &str| count.get(name) == Some(&1);
         for (i, id) in self.plan.source.iter().enumerate() {
             let Some(step) = unit.steps.get(id.index()) else { continue };
             s.step_names.push_with(|text| self.trace_name(*id, &unique, text));
             s.step_paths.push_with(|text| self.path(*id, text));
             s.step_places.push(step.at);
+            s.step_charts.push(step.chart.0);
             s.pseudo.push(self.plan.pseudo(*id) == Some(Number(i as u32)));
         }
         for (i, step) in unit.steps.iter().enumerate() {
@@ -97,7 +99,9 @@ impl Lower<'_> {
             self.trace_name(id, &unique, &mut name);
             self.path(id, &mut path);
             let step_id = self.plan.pseudo(id);
+            let chart = unit.charts.get(step.chart.index()).map(|c| c.name.clone()).unwrap_or_default();
             s.macro_steps.push(MacroSymbol {
+                chart,
                 name: name.into(),
                 path: path.into(),
                 group,
@@ -144,6 +148,7 @@ impl Lower<'_> {
                         self.side(&t.to, text);
                     });
                     s.transition_places.push(t.at);
+                    s.transition_charts.push(t.chart.0);
                     s.hidden.push(false);
                 }
                 Origin::Return(task) => {
@@ -155,6 +160,7 @@ impl Lower<'_> {
                         self.side(chart.entry.as_slice(), text);
                     });
                     s.transition_places.push(chart.at);
+                    s.transition_charts.push(task.0);
                     s.hidden.push(true);
                 }
             }

@@ -1,11 +1,12 @@
 //! Walks through the whole document, name by name.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
+use g7_model::instances::uninstantiated;
 use g7_model::visit::Visitor;
 use g7_model::{
-    Block, Chart, ChartItem, Document, Item, Name, Order, Placed, Plant, PlantItem, Situation, Span, Step,
-    StepKind, Transition, VarDecl,
+    Block, Chart, ChartItem, Document, Index, Instance, InstanceNames, Item, Name, Order, Placed, Plant,
+    PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl, instance_of,
 };
 
 use super::named::{Definition, Unknown, Use, Written};
@@ -14,7 +15,8 @@ use crate::resolve::{Tracer, resolve_open};
 
 /// Returns every name with what it refers to, and the names that refer to nothing.
 pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
-    let (mut unit, mut scopes, _) = resolve_open(doc, None);
+    let resolved = uninstantiated(doc);
+    let (mut unit, mut scopes, _) = resolve_open(&resolved, None);
     let tracer = Tracer::new(&mut unit, &mut scopes);
     let mut walk = Walk { tracer, locals: Vec::new(), plant: None, uses: Vec::new(), unknown: Vec::new() };
     let mut charts = 0;
@@ -28,7 +30,44 @@ pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
             walk.item(doc, item);
         }
     }
+    instances_as_charts(doc, &mut walk.uses);
     (walk.uses, walk.unknown)
+}
+
+/// The parts of an instance with a name of its own are defined in its chart with parameters.
+fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
+    let own = |i: &'_ Item| match i {
+        Item::Instance(Instance { chart, names: InstanceNames::One(name), .. }) => {
+            Some((name.text.to_string(), chart.text.to_string()))
+        }
+        _ => None,
+    };
+    let own: HashMap<String, String> = doc.items.iter().filter_map(own).collect();
+    if own.is_empty() {
+        return;
+    }
+    for used in uses {
+        let home = match &mut used.definition {
+            Definition::Step { chart, .. } | Definition::Transition { chart, .. } => Some(chart),
+            Definition::Variable { chart, .. }
+            | Definition::Action { chart, .. }
+            | Definition::Section { chart, .. } => chart.as_mut(),
+            Definition::Chart(_)
+            | Definition::Function(_)
+            | Definition::Plant(_)
+            | Definition::PlantItem { .. } => None,
+        };
+        if let Some(home) = home
+            && let Some(chart) = own.get(home)
+        {
+            home.clone_from(chart);
+        }
+    }
+}
+
+/// The chart that is named: `Axis` of `Axis[3]`.
+fn chart_of(name: &str) -> &str {
+    instance_of(name).map_or(name, |(chart, _)| chart)
 }
 
 struct Walk<'u, 'd> {
@@ -52,6 +91,18 @@ impl<'d> Walk<'_, 'd> {
         }
     }
 
+    /// The parameter in the name of an instance, `Axis[i + 1]`: it stands right behind the bracket.
+    fn index(&mut self, name: &Name) {
+        let Some((_, Index::Parameter(parameter, _))) = instance_of(&name.text) else { return };
+        let start = name.at.0.end + 1;
+        let at = Span { start, end: start + parameter.len() as u32, ..name.at.0 };
+        let found = self.tracer.path(&[Name::new(parameter, at)], &self.locals).names.into_iter().next();
+        match found {
+            Some((_, definition, _)) => self.add(at, definition, Written::Name),
+            None => self.unknown.push(Unknown { at, step_of: None }),
+        }
+    }
+
     /// A name that can only be that of a step of a chart.
     fn step_name(&mut self, chart: &str, name: &Name, written: Written) {
         match self.tracer.step_of(chart, &name.text) {
@@ -65,6 +116,7 @@ impl<'d> Walk<'_, 'd> {
     fn item(&mut self, doc: &'d Document, item: &'d Item) {
         match item {
             Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Chart(_) => {}
+            Item::Instance(i) => self.named_instance(i),
             Item::Var(v) => self.variable(None, v),
             Item::Action(a) => self.named(None, a),
             Item::Section(s) => self.section(None, s),
@@ -107,6 +159,20 @@ impl<'d> Walk<'_, 'd> {
         }
     }
 
+    fn named_instance(&mut self, i: &'d Instance) {
+        let chart = self.tracer.chart(&i.chart.text);
+        self.name(&i.chart, chart, Written::Name);
+        if let InstanceNames::One(name) = &i.names {
+            self.add(name.at.0, Definition::Chart(name.text.to_string()), Written::Declared);
+        }
+        for name in i.args.iter().filter_map(|a| a.name.as_ref()) {
+            let def =
+                Definition::Variable { chart: Some(i.chart.text.to_string()), name: name.text.to_string() };
+            self.add(name.at.0, def, Written::Name);
+        }
+        self.instance(i);
+    }
+
     fn variable(&mut self, chart: Option<&str>, v: &'d VarDecl) {
         for name in &v.names {
             let def = Definition::Variable { chart: chart.map(str::to_owned), name: name.text.to_string() };
@@ -132,6 +198,10 @@ impl<'d> Walk<'_, 'd> {
     fn chart(&mut self, chart: &'d Chart) {
         let home = chart.name.text.to_string();
         self.add(chart.name.at.0, Definition::Chart(home.clone()), Written::Declared);
+        for param in &chart.params {
+            let def = Definition::Variable { chart: Some(home.clone()), name: param.name.text.to_string() };
+            self.add(param.name.at.0, def, Written::Declared);
+        }
         for item in &chart.items {
             match item {
                 ChartItem::Var(v) => self.variable(Some(&home), v),
@@ -148,7 +218,8 @@ impl<'d> Walk<'_, 'd> {
         let def = Definition::Step { chart: chart.to_owned(), name: step.name.text.to_string() };
         self.add(step.name.at.0, def, Written::Declared);
         if let StepKind::Macro(expansion) = &step.kind {
-            let chart = self.tracer.chart(&expansion.text);
+            self.index(expansion);
+            let chart = self.tracer.chart(chart_of(&expansion.text));
             self.name(expansion, chart, Written::Name);
         }
         step.actions.iter().for_each(|a| self.action(a));
@@ -200,7 +271,13 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         if let Some((at, def)) = of_plant {
             return self.add(at, def, Written::Path { first: true, only });
         }
-        let followed = self.tracer.path(names, &self.locals);
+        let numbered = names.first().and_then(|n| instance_of(&n.text)).filter(|_| !only);
+        let named = numbered.map(|(chart, _)| {
+            let first = names.first().map(|n| Name::new(chart, n.at.0));
+            first.into_iter().chain(names.iter().skip(1).cloned()).collect::<Vec<_>>()
+        });
+        names.first().filter(|_| !only).into_iter().for_each(|n| self.index(n));
+        let followed = self.tracer.path(named.as_deref().unwrap_or(names), &self.locals);
         if !followed.whole {
             let known = |k: usize| followed.names.iter().any(|(of, ..)| *of == k);
             let missing = names.iter().enumerate().filter(|(k, _)| !known(*k));
@@ -228,13 +305,14 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         let name = match order {
             Order::Force(name, situation) => {
                 if let Situation::Steps(steps) = situation {
-                    steps.iter().for_each(|step| self.step_name(&name.text, step, Written::Step));
+                    steps.iter().for_each(|step| self.step_name(chart_of(&name.text), step, Written::Step));
                 }
                 name
             }
             Order::Enable(name) | Order::Mask(name) | Order::Call(name) | Order::Enclose(name) => name,
         };
-        let chart = self.tracer.chart(&name.text);
+        self.index(name);
+        let chart = self.tracer.chart(chart_of(&name.text));
         let output = matches!(order, Order::Mask(_)) && chart.is_none();
         if output {
             let def = self.tracer.path(std::slice::from_ref(name), &self.locals).names.into_iter().next();

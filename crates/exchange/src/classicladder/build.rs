@@ -202,6 +202,7 @@ fn chart(
     let chart_name = Name::new(title, at);
     let layout = Layout { chart: chart_name.clone(), places, at: at.into() };
     let chart = Chart {
+        params: Vec::new(),
         kind: ChartKind::Chart,
         name: chart_name,
         comment: (!comment.is_empty()).then(|| comment.join(" / ").into()),

@@ -274,6 +274,7 @@ fn chart(sequence: &Sequence, title: &str, report: &mut Report) -> Chart {
         items.push(ChartItem::Transition(transition));
     }
     Chart {
+        params: Vec::new(),
         kind: ChartKind::Chart,
         name: Name::new(title, at),
         comment: (!sequence.title.is_empty()).then(|| sequence.title.as_str().into()),

@@ -91,6 +91,7 @@ impl<'a> Builder<'_, 'a> {
             items.extend(self.transition(index, number, sheet, ends).map(ChartItem::Transition));
         }
         Some(Chart {
+            params: Vec::new(),
             kind: if sheet.expansion { ChartKind::Expansion } else { ChartKind::Chart },
             name: Name::new(self.names.chart(index), at),
             comment: None,

@@ -206,10 +206,10 @@ impl Board {
     /// The names of all that frames have numbers for.
     pub(super) fn description(&self) -> Value {
         let Known { source, bench, wiring, view } = &*self.names;
-        let steps = bench.steps.iter().zip(self.places.steps()).map(|(step, id)| {
-            let chart = id.split_once("/s/").map_or("", |(chart, _)| chart);
+        let steps = bench.steps.iter().zip(self.places.steps()).map(|(step, part)| {
+            let chart = part.id.split_once("/s/").map_or("", |(chart, _)| chart);
             let is_macro = matches!(step.id, Activity::Macro(_));
-            json!({ "id": id, "name": step.name, "chart": chart, "comment": step.comment, "macro": is_macro })
+            json!({ "id": part.id, "instance": part.instance, "name": step.name, "chart": chart, "comment": step.comment, "macro": is_macro })
         });
         let devices = wiring.devices.iter().map(|wired| {
             let kind = &wired.device.kind;

@@ -42,7 +42,15 @@ impl<'a> Maker<'_, '_, '_, 'a> {
         let comment = self.comment(&graph, of, kind);
         let chart_name =
             Name::new(name.as_str(), text(of, "name").map_or(at, |t| self.coder.report.span(&t.at)));
-        let empty = Chart { kind, name: chart_name, comment, every, items: Vec::new(), at: at.into() };
+        let empty = Chart {
+            kind,
+            name: chart_name,
+            params: Vec::new(),
+            comment,
+            every,
+            items: Vec::new(),
+            at: at.into(),
+        };
         self.made.charts.push(empty);
         let ends = (kind == ChartKind::Expansion).then(|| ends(&flow.steps, &flow.ways));
         let mut places = Vec::new();
@@ -88,6 +96,7 @@ impl<'a> Maker<'_, '_, '_, 'a> {
         self.made.charts.push(Chart {
             kind: order.kind,
             name: Name::new(order.name, name_at),
+            params: Vec::new(),
             comment: documentation(order.of).map(Into::into),
             every: order.every,
             items: Vec::new(),

@@ -235,6 +235,7 @@ impl Builder<'_> {
         let chart = Chart {
             kind: ChartKind::Chart,
             name: unit.name.clone(),
+            params: Vec::new(),
             comment: None,
             every: every.filter(|e| Some(*e) != self.paces.scan),
             items,

@@ -30,7 +30,8 @@ impl<'d> Lower<'d> {
                 Item::Function(f) => functions.push(Item::Function(self.function(f))),
                 Item::Pre(body, at) => self.processing(None, body, at.0, &mut pre),
                 Item::Post(body, at) => self.processing(None, body, at.0, &mut post),
-                Item::Action(_) | Item::Section(_) | Item::Layout(_) | Item::Chart(_) => {}
+                Item::Action(_) | Item::Section(_) | Item::Layout(_) | Item::Chart(_) | Item::Instance(_) => {
+                }
                 Item::Target(_, at) => {
                     self.left_out(at.0, say!("the PLC whose limits are checked is left out"))
                 }
@@ -489,6 +490,7 @@ impl<'d> Lower<'d> {
             let made = Chart {
                 kind: if inner { ChartKind::Expansion } else { ChartKind::Chart },
                 name,
+                params: Vec::new(),
                 comment: chart.comment.clone(),
                 every: self.pace(head),
                 items,

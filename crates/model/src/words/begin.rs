@@ -52,6 +52,14 @@ pub const FILE: &[Word] = &[
         "task",
         ["a chart that steps call", "un grafcet que des étapes appellent", "um grafcet que as etapas chamam"],
     ),
+    Word::free(
+        "instance",
+        [
+            "a chart with parameters that runs",
+            "un grafcet à paramètres qui s’exécute",
+            "um grafcet com parâmetros que é executado",
+        ],
+    ),
     Word::reserved("action", ["a named action", "une action nommée", "uma ação com nome"]),
     SECTION,
     Word::reserved("function", ["a function", "une fonction", "uma função"]),

@@ -4,13 +4,33 @@ use std::collections::BTreeMap;
 
 use g7_ide::ids::{self, Thing};
 use g7_model::Span;
-use g7_rig::{Bench, Source};
+use g7_rig::{Bench, Source, StepItem};
+use serde::Serialize;
+
+/// A symbol of a drawing in a run.
+#[derive(Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "RunPart", optional_fields))]
+pub struct Part {
+    /// The id of the symbol.
+    pub id: String,
+    /// The instance that it belongs to, `Axis[3]`, if its chart has parameters: then several parts have one symbol.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub instance: Option<String>,
+}
+
+impl Part {
+    /// A symbol as a part of a chart of the program.
+    fn of(symbol: &(String, String), chart: &str) -> Part {
+        let (id, drawn) = symbol;
+        Part { id: id.clone(), instance: Some(chart.to_owned()).filter(|c| c != drawn) }
+    }
+}
 
 /// The ids of the parts of a program, by their numbers in frames.
 #[derive(Debug, Default)]
 pub struct Places {
-    pub(super) steps: Vec<String>,
-    pub(super) transitions: Vec<String>,
+    steps: Vec<Part>,
+    transitions: Vec<Part>,
     /// The number of the transition with each rank.
     ranks: Vec<Option<u32>>,
 }
@@ -18,36 +38,41 @@ pub struct Places {
 impl Places {
     /// The ids for a bench that was built from this source.
     pub fn new(source: &Source, bench: &Bench) -> Places {
-        let mut steps: BTreeMap<Span, String> = BTreeMap::new();
-        let mut places = Places::default();
-        let mut numbers: BTreeMap<Span, u32> = BTreeMap::new();
+        let mut steps: BTreeMap<Span, (String, String)> = BTreeMap::new();
+        let mut transitions = steps.clone();
         for (at, thing) in ids::things(&source.document) {
             match thing {
-                Thing::Step(_, s) => {
-                    steps.insert(s.name.at.0, thing.id());
-                }
-                Thing::Transition(..) => {
-                    numbers.insert(at, places.transitions.len() as u32);
-                    places.transitions.push(thing.id());
-                }
+                Thing::Step(c, s) => _ = steps.insert(s.name.at.0, (thing.id(), c.name.text.to_string())),
+                Thing::Transition(c, ..) => _ = transitions.insert(at, (thing.id(), c.name.text.to_string())),
                 Thing::Action(..) => {}
             }
         }
-        places.steps = bench.steps.iter().map(|s| steps.get(&s.at).cloned().unwrap_or_default()).collect();
         let symbols = &bench.compiled.symbols;
-        let number =
-            |rank| symbols.is_written(rank).then(|| numbers.get(&symbols.transition_place(rank)).copied());
-        places.ranks = (0..symbols.transitions()).map(|rank| number(rank).flatten()).collect();
+        let step = |s: &StepItem| steps.get(&s.at).map(|id| Part::of(id, &s.chart)).unwrap_or_default();
+        let mut places = Places { steps: bench.steps.iter().map(step).collect(), ..Places::default() };
+        let mut numbers: BTreeMap<Part, u32> = BTreeMap::new();
+        places.ranks = (0..symbols.transitions())
+            .map(|rank| {
+                let symbol = transitions.get(&symbols.transition_place(rank));
+                let part =
+                    Part::of(symbol.filter(|_| symbols.is_written(rank))?, symbols.transition_chart(rank));
+                let next = numbers.len() as u32;
+                Some(*numbers.entry(part).or_insert(next))
+            })
+            .collect();
+        let mut numbered: Vec<(Part, u32)> = numbers.into_iter().collect();
+        numbered.sort_unstable_by_key(|(_, number)| *number);
+        places.transitions = numbered.into_iter().map(|(part, _)| part).collect();
         places
     }
 
-    /// The ids of the steps of the bench, in its order.
-    pub fn steps(&self) -> &[String] {
+    /// The steps of the bench, in its order.
+    pub fn steps(&self) -> &[Part] {
         &self.steps
     }
 
-    /// The ids of the transitions.
-    pub fn transitions(&self) -> &[String] {
+    /// The transitions.
+    pub fn transitions(&self) -> &[Part] {
         &self.transitions
     }
 
@@ -57,18 +82,24 @@ impl Places {
     }
 
     pub(super) fn transition_id(&self, number: u32) -> Option<String> {
-        self.transitions.get(number as usize).cloned()
+        self.transitions.get(number as usize).map(|t| t.id.clone())
     }
 
-    pub(super) fn step(&self, id: &str) -> Option<u32> {
-        self.steps.iter().position(|s| s == id).and_then(|i| u32::try_from(i).ok())
+    /// The numbers of the steps with a symbol: several, if its chart has parameters.
+    pub(super) fn steps_of(&self, id: &str) -> impl Iterator<Item = u32> {
+        numbers_of(&self.steps, id)
     }
 
-    pub(super) fn transition_of(&self, id: &str) -> Option<u32> {
-        self.transitions.iter().position(|t| t == id).and_then(|i| u32::try_from(i).ok())
+    /// The numbers of the transitions with a symbol.
+    pub(super) fn transitions_of(&self, id: &str) -> impl Iterator<Item = u32> {
+        numbers_of(&self.transitions, id)
     }
 
     pub(super) fn step_id(&self, number: u32) -> Option<String> {
-        self.steps.get(number as usize).cloned()
+        self.steps.get(number as usize).map(|s| s.id.clone())
     }
+}
+
+fn numbers_of(parts: &[Part], id: &str) -> impl Iterator<Item = u32> {
+    (0u32..).zip(parts).filter(move |(_, p)| p.id == id).map(|(number, _)| number)
 }

@@ -337,17 +337,20 @@ impl Run {
     pub(crate) fn set_breaks(&mut self, ids: &[String]) {
         self.breaks = Breaks::default();
         for id in ids {
-            if let Some(step) = self.places.step(id) {
-                self.breaks.steps.insert(step);
-            } else if let Some(transition) = self.places.transition_of(id) {
-                self.breaks.transitions.insert(transition);
-            }
+            self.breaks.steps.extend(self.places.steps_of(id));
+            self.breaks.transitions.extend(self.places.transitions_of(id));
         }
     }
 
     /// The ids of the breakpoints.
     pub(crate) fn break_ids(&self) -> Vec<String> {
         let steps = self.breaks.steps.iter().filter_map(|s| self.places.step_id(*s));
-        steps.chain(self.breaks.transitions.iter().filter_map(|t| self.places.transition_id(*t))).collect()
+        let mut ids: Vec<String> = steps
+            .chain(self.breaks.transitions.iter().filter_map(|t| self.places.transition_id(*t)))
+            .collect();
+        // The steps of all instances have one id.
+        let mut told = BTreeSet::new();
+        ids.retain(|id| told.insert(id.clone()));
+        ids
     }
 }

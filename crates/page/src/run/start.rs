@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::frame::Frame;
 use super::past::Past;
-use super::places::Places;
+use super::places::{Part, Places};
 use super::running::{Breaks, Run, recording};
 use super::sent::Sent;
 use super::wish::{Start, bench};
@@ -25,7 +25,7 @@ pub(crate) struct Started {
     period_ms: f64,
     signals: Vec<SignalRow>,
     steps: Vec<StepRow>,
-    transitions: Vec<TransitionRow>,
+    transitions: Vec<Part>,
     #[serde(skip_serializing_if = "Option::is_none")]
     plant: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,9 +53,11 @@ struct SignalRow {
 }
 
 #[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "RunStep"))]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "RunStep", optional_fields))]
 struct StepRow {
     id: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    instance: Option<String>,
     name: String,
     chart: String,
     /// The name of the signal of its activity.
@@ -86,12 +88,6 @@ enum SignalType {
     Real,
     Time,
     Text,
-}
-
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-struct TransitionRow {
-    id: String,
 }
 
 #[derive(Debug, Serialize)]
@@ -177,10 +173,11 @@ impl Run {
             },
             driven: bench.is_driven(&self.runner, item),
         };
-        let step = |(item, id): (&g7_rig::StepItem, &String)| StepRow {
-            id: id.clone(),
+        let step = |(item, part): (&g7_rig::StepItem, &Part)| StepRow {
+            id: part.id.clone(),
+            instance: part.instance.clone(),
             name: item.name.clone(),
-            chart: id.split_once("/s/").map_or("", |(chart, _)| chart).to_owned(),
+            chart: part.id.split_once("/s/").map_or("", |(chart, _)| chart).to_owned(),
             activity: item.activity(),
             is_macro: matches!(item.id, Activity::Macro(_)),
             inner: item.inner,
@@ -198,8 +195,8 @@ impl Run {
             profile: bench.compiled.unit.profile.name(),
             period_ms: self.runner.period().as_millis(),
             signals: bench.items.iter().map(signal).collect(),
-            steps: bench.steps.iter().zip(&self.places.steps).map(step).collect(),
-            transitions: self.places.transitions.iter().map(|id| TransitionRow { id: id.clone() }).collect(),
+            steps: bench.steps.iter().zip(self.places.steps()).map(step).collect(),
+            transitions: self.places.transitions().to_vec(),
             plant: bench.plant.as_ref().map(|p| p.name.clone()),
             view,
             hash: crate::overview::hash(&self.text),

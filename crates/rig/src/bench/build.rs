@@ -113,16 +113,18 @@ fn steps(document: &Document, symbols: &Symbols) -> Vec<StepItem> {
     for chart in document.charts() {
         written.extend(chart.steps().map(|s| (s.name.at.0, (s, chart.kind != ChartKind::Chart))));
     }
-    let item = |name: &str, at: Span, id| StepItem {
+    let item = |name: &str, chart: &str, at: Span, id| StepItem {
         name: name.to_owned(),
+        chart: chart.to_owned(),
         at,
         comment: written.get(&at).and_then(|(s, _)| s.comment.as_deref()).map(str::to_owned),
         id,
         inner: written.get(&at).is_some_and(|(_, inner)| *inner),
     };
-    let macros = symbols.macro_steps.iter().map(|m| item(&m.name, m.at, Activity::Macro(m.group)));
+    let macros = symbols.macro_steps.iter().map(|m| item(&m.name, &m.chart, m.at, Activity::Macro(m.group)));
     let listed = (0..symbols.steps()).map(StepId).filter(|s| symbols.is_listed(*s));
-    let plain = listed.map(|s| item(symbols.step_name(s), symbols.step_place(s), Activity::Step(s)));
+    let plain = listed
+        .map(|s| item(symbols.step_name(s), symbols.step_chart(s), symbols.step_place(s), Activity::Step(s)));
     plain.chain(macros).collect()
 }
 

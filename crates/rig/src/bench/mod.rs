@@ -59,6 +59,8 @@ pub struct Item {
 pub struct StepItem {
     /// Its name, as traces write it.
     pub name: String,
+    /// The name of its chart; of an instance its own, `Axis[3]`.
+    pub chart: String,
     /// The author's comment, without quotes.
     pub comment: Option<String>,
     /// The step or macro-step whose activity it has.

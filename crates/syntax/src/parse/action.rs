@@ -67,19 +67,19 @@ impl Parser<'_> {
             "force" => self.force(),
             "enable" => {
                 self.bump();
-                Order::Enable(self.name(say!("the name of a chart")))
+                Order::Enable(self.chart_name(say!("the name of a chart")))
             }
             "mask" => {
                 self.bump();
-                Order::Mask(self.name(say!("the name of a chart or of an output")))
+                Order::Mask(self.chart_name(say!("the name of a chart or of an output")))
             }
             "call" => {
                 self.bump();
-                Order::Call(self.name(say!("the name of a task")))
+                Order::Call(self.chart_name(say!("the name of a task")))
             }
             "enclose" => {
                 self.bump();
-                Order::Enclose(self.name(say!("the name of a chart")))
+                Order::Enclose(self.chart_name(say!("the name of a chart")))
             }
             _ => return self.qualified(),
         };
@@ -118,7 +118,7 @@ impl Parser<'_> {
     /// `force G := …`.
     fn force(&mut self) -> Order {
         self.bump();
-        let chart = self.name(say!("the name of a chart"));
+        let chart = self.chart_name(say!("the name of a chart"));
         self.assign_sign();
         if self.eat_word("INIT") {
             return Order::Force(chart, Situation::Init);

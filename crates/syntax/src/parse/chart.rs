@@ -25,16 +25,18 @@ impl Parser<'_> {
             _ => ChartKind::Chart,
         };
         let start = self.cur.start;
-        let (name, comment, every) = self.head(|p| {
+        let (name, params, comment, every) = self.head(|p| {
             p.bump();
-            (p.name(say!("the name of the chart")), p.comment_if(), p.period(kind))
+            let name = p.name(say!("the name of the chart"));
+            let params = if p.at_call() { p.params() } else { Vec::new() };
+            (name, params, p.comment_if(), p.period(kind))
         });
         let open = self.here();
         let mut items = Vec::new();
         if self.expect(Tok::LBrace, say!("`{{` and the steps of the chart")) || self.at_chart_start() {
             self.chart_items(&mut items, open);
         }
-        Chart { kind, name, comment, every, items, at: self.since(start).into() }
+        Chart { kind, name, params, comment, every, items, at: self.since(start).into() }
     }
 
     /// `every 20ms`.
@@ -329,7 +331,7 @@ impl Parser<'_> {
         } else {
             self.expect(Tok::Eq, say!("`=` and the name of the expansion"));
         }
-        let expansion = self.name(say!("the name of the expansion, a `macrochart`"));
+        let expansion = self.chart_name(say!("the name of the expansion, a `macrochart`"));
         self.step_rest(start, name, StepKind::Macro(expansion), initial)
     }
 

@@ -443,8 +443,11 @@ impl Parser<'_> {
 
     /// Reads `a.b.c`. The caller has checked that a name stands here.
     pub(super) fn path(&mut self) -> Path {
-        let mut names = vec![self.name(say!("a name"))];
-        while self.eat(Tok::PathDot) {
+        let first = self.name(say!("a name"));
+        let mut names = vec![self.chart_of_path(first)];
+        while self.eat(Tok::PathDot)
+            || names.len() == 1 && self.prev.kind == Tok::RBracket && self.dot_of_member()
+        {
             names.push(self.member());
         }
         Path { names }
@@ -494,7 +497,7 @@ impl Parser<'_> {
         }
         self.close(Tok::RBracket, say!("`]`"), open);
         self.leave();
-        let member = self.eat(Tok::PathDot).then(|| Box::new(self.member()));
+        let member = self.dot_of_member().then(|| Box::new(self.member()));
         (ExprKind::Element(Box::new(path), index, member), height)
     }
 

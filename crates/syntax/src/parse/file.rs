@@ -51,6 +51,7 @@ impl Parser<'_> {
             }
             "target" => self.line(Parser::target),
             "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
+            "instance" => Item::Instance(self.line(Parser::instance)),
             "action" => Item::Action(self.line(Parser::named_action)),
             "transition" => Item::Section(self.line(Parser::section)),
             "function" => Item::Function(self.line(Parser::function)),

@@ -10,6 +10,7 @@ mod expr;
 mod extent;
 mod file;
 mod il;
+mod instance;
 pub(crate) mod ladder;
 mod lines;
 mod literal;
@@ -456,6 +457,7 @@ impl<'a> Parser<'a> {
             "profile" => self.peek().kind == Tok::Word,
             "test" => self.peek().kind == Tok::Comment,
             "prove" => self.peek().kind == Tok::Word,
+            "instance" => self.at_instance(),
             _ => false,
         }
     }

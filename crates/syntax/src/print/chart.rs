@@ -16,6 +16,9 @@ impl Printer<'_> {
             ChartKind::Task => "task ",
         });
         self.name(&chart.name.text);
+        if !chart.params.is_empty() {
+            self.params(&chart.params);
+        }
         self.comment(chart.comment.as_deref());
         self.time_clause("every", chart.every, chart.at.0);
         self.push(" ");
@@ -78,7 +81,7 @@ impl Printer<'_> {
         self.name(&step.name.text);
         if let StepKind::Macro(expansion) = &step.kind {
             self.push(" = ");
-            self.name(&expansion.text);
+            self.chart_name(&expansion.text);
         }
         self.push(if step.linked { "*" } else { "" });
         self.comment(step.comment.as_deref());
@@ -182,7 +185,7 @@ impl Printer<'_> {
             Order::Enclose(name) => ("enclose ", name),
         };
         self.push(word);
-        self.name(&name.text);
+        self.chart_name(&name.text);
         let Order::Force(_, situation) = order else { return };
         self.push(" := ");
         match situation {

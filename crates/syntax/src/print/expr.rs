@@ -3,7 +3,7 @@
 use super::Printer;
 use crate::quote;
 use g7_iec::constant;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp, instance_of};
 
 impl<'a> Printer<'a> {
     pub(super) fn expr(&mut self, e: &Expr) {
@@ -144,6 +144,8 @@ impl<'a> Printer<'a> {
             if i > 0 {
                 self.push(".");
                 self.name(&name.text);
+            } else if path.names.len() > 1 && instance_of(&name.text).is_some() {
+                self.chart_name(&name.text);
             } else if name.text.starts_with(|c: char| c.is_ascii_digit()) {
                 // A bare number would be read as a number, not as a name.
                 self.push(&quote::quote(&name.text, '`'));
@@ -158,7 +160,7 @@ impl<'a> Printer<'a> {
         self.args(args);
     }
 
-    fn args(&mut self, args: &[Arg]) {
+    pub(super) fn args(&mut self, args: &[Arg]) {
         self.push("(");
         for (i, arg) in args.iter().enumerate() {
             self.push(if i > 0 { ", " } else { "" });

@@ -4,8 +4,8 @@ use super::{Printer, is_plain};
 use crate::parse::SWITCHES;
 use g7_iec::constant;
 use g7_model::{
-    Array, Document, Function, Item, Name, NamedAction, Param, Profile, Section, Span, StmtKind, Switch,
-    VarDecl, VarKind,
+    Array, Document, Function, Instance, InstanceNames, Item, Name, NamedAction, Param, Profile, Section,
+    Span, StmtKind, Switch, VarDecl, VarKind,
 };
 
 impl Printer<'_> {
@@ -35,6 +35,7 @@ impl Printer<'_> {
             }),
             Item::Var(v) => self.line(v.at.0, apart, |s| s.variable(v)),
             Item::Chart(c) => self.group(c.at.0, apart, |s| s.chart(c)),
+            Item::Instance(i) => self.line(i.at.0, apart, |s| s.instance(i)),
             Item::Action(a) => self.group(a.at.0, apart, |s| s.named_action(a)),
             Item::Section(x) => self.section_item(x, apart),
             Item::Function(f) => self.group(f.at.0, apart, |s| s.function(f)),
@@ -155,6 +156,29 @@ impl Printer<'_> {
         self.name(&section.name.text);
     }
 
+    fn instance(&mut self, instance: &Instance) {
+        self.push("instance ");
+        match &instance.names {
+            InstanceNames::One(name) => {
+                self.name(&name.text);
+                self.push(" : ");
+                self.name(&instance.chart.text);
+            }
+            InstanceNames::Range(least, most) => {
+                self.name(&instance.chart.text);
+                self.push("[");
+                self.expr(least);
+                self.push("..");
+                self.expr(most);
+                self.push("]");
+            }
+        }
+        if !instance.args.is_empty() {
+            self.args(&instance.args);
+        }
+        self.comment(instance.comment.as_deref());
+    }
+
     fn function(&mut self, function: &Function) {
         self.push("function ");
         self.name(&function.name.text);
@@ -186,6 +210,7 @@ enum Family {
     Head,
     Variables,
     Properties,
+    Instances,
     Braces,
 }
 
@@ -194,6 +219,7 @@ fn family(item: &Item) -> Family {
         Item::Profile(_) | Item::Cycle(..) | Item::Target(..) => Family::Head,
         Item::Var(_) => Family::Variables,
         Item::Prove(_) => Family::Properties,
+        Item::Instance(_) => Family::Instances,
         Item::Section(s) if s.short => Family::Variables,
         Item::Chart(_)
         | Item::Action(_)

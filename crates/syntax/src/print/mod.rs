@@ -16,7 +16,7 @@ use crate::lexer::{name_continue, name_start};
 use crate::quote;
 use crate::{LineIndex, words};
 use g7_iec::constant;
-use g7_model::{Document, Expr, Nanos, Note, Span, Stmt};
+use g7_model::{Document, Expr, Nanos, Note, Span, Stmt, instance_of};
 
 /// The largest width of a line that is joined from several parts.
 const WIDTH: usize = 100;
@@ -249,6 +249,13 @@ impl<'a> Printer<'a> {
         } else {
             self.push(&quote::quote(name, '`'));
         }
+    }
+
+    /// The name of a chart where it is used: that of an instance has an index.
+    fn chart_name(&mut self, name: &str) {
+        let Some((chart, _)) = instance_of(name) else { return self.name(name) };
+        self.name(chart);
+        self.push(&name[chart.len()..]);
     }
 
     /// A name in a place where words of the language are allowed.

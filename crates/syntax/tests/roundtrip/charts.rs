@@ -203,7 +203,7 @@ fn chart() -> impl Strategy<Value = Chart> {
         |(kind, name, comment, every, mut items)| {
             chain(&mut items);
             let every = every.filter(|_| kind == ChartKind::Chart);
-            Chart { kind, name, comment, every, items, at: at() }
+            Chart { kind, name, params: Vec::new(), comment, every, items, at: at() }
         },
     )
 }

@@ -1,0 +1,448 @@
+//! Puts the instances of charts with parameters in the place of these charts.
+//!
+//! ```text
+//! syntax -> Document -> here -> compile, the writers of exchange
+//! ```
+//!
+//! An instance is a chart of its own: the steps, transitions and variables of the chart with parameters, and a
+//! constant for each parameter. So all that follows knows charts only.
+//!
+//! # What must hold
+//!
+//! - A document without parameters and instances is not copied.
+//! - In the result no chart has parameters, and no name is that of an instance by a parameter (`Axis[i + 1]`).
+//! - All places are those of the one text. The work is bounded by [`MOST`].
+
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+use crate::visit_mut::{self, Use, Visitor};
+use crate::{
+    Arg, Chart, ChartItem, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item, Layout, Literal,
+    Name, Param, Path, Problem, Span, VarDecl, VarKind, codes, instance_of, say,
+};
+
+/// The greatest number of steps, transitions and other items in all instances together.
+const MOST: usize = 1 << 18;
+
+/// The document with charts for all instances, and the problems of their declarations.
+pub fn instantiated(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
+    let concerned = |i: &Item| match i {
+        Item::Chart(c) => !c.params.is_empty(),
+        Item::Instance(_) => true,
+        _ => false,
+    };
+    if !document.items.iter().any(concerned) {
+        return (Cow::Borrowed(document), Vec::new());
+    }
+    let mut made = Maker::of(document);
+    for item in &document.items {
+        match item {
+            Item::Instance(i) => made.instances(i),
+            Item::Chart(c) if !c.params.is_empty() => {}
+            Item::Layout(l) if made.charts.contains_key(&*l.chart.text) => {}
+            item => made.items.push(item.clone()),
+        }
+    }
+    made.layouts(document);
+    made.unused(document);
+    (Cow::Owned(Document { items: made.items, notes: document.notes.clone() }), made.problems)
+}
+
+/// The document for those who follow its names: a chart with parameters is one chart with constants, and `Lift` of
+/// `instance Lift : Axis(7)` is a copy of it behind all other items.
+pub fn uninstantiated(document: &Document) -> Cow<'_, Document> {
+    if !document.charts().any(|c| !c.params.is_empty()) {
+        return Cow::Borrowed(document);
+    }
+    let mut own = document.clone();
+    for item in &mut own.items {
+        if let Item::Chart(c) = item {
+            let constants = std::mem::take(&mut c.params);
+            let constants = constants.iter().map(|p| ChartItem::Var(constant(p, None)));
+            c.items.splice(0..0, constants.collect::<Vec<_>>());
+        }
+    }
+    for item in &document.items {
+        if let Item::Instance(Instance { chart, names: InstanceNames::One(name), .. }) = item {
+            let copy = own.charts().find(|c| c.name.text == chart.text).cloned();
+            let Some(copy) = copy else { continue };
+            own.items.push(Item::Chart(Chart { name: name.clone(), ..copy }));
+        }
+    }
+    Cow::Owned(own)
+}
+
+struct Maker<'d> {
+    /// The charts with parameters.
+    charts: HashMap<&'d str, &'d Chart>,
+    /// The charts without.
+    plain: HashMap<&'d str, Span>,
+    /// Whole constants of the file, for the bounds of ranges.
+    constants: HashMap<&'d str, i128>,
+    items: Vec<Item>,
+    /// The chart, name and declaration of each instance, in the order of the text.
+    made: Vec<(&'d str, Box<str>)>,
+    named: HashMap<Box<str>, Span>,
+    size: usize,
+    problems: Vec<Problem>,
+}
+
+impl<'d> Maker<'d> {
+    fn of(document: &'d Document) -> Maker<'d> {
+        let (mut charts, mut plain) = (HashMap::new(), HashMap::new());
+        for chart in document.charts() {
+            if chart.params.is_empty() {
+                plain.entry(&*chart.name.text).or_insert(chart.name.at.0);
+            } else {
+                charts.entry(&*chart.name.text).or_insert(chart);
+            }
+        }
+        let mut constants = HashMap::new();
+        for item in &document.items {
+            if let Item::Var(v) = item
+                && v.kind == VarKind::Const
+                && let Some(value) = v.init.as_ref().and_then(|e| e.kind.whole())
+            {
+                constants.extend(v.names.iter().map(|n| (&*n.text, value)));
+            }
+        }
+        let mut made = Maker {
+            charts,
+            plain,
+            constants,
+            items: Vec::new(),
+            made: Vec::new(),
+            named: HashMap::new(),
+            size: 0,
+            problems: Vec::new(),
+        };
+        made.twice(document);
+        made
+    }
+
+    /// Reports charts with parameters whose name another chart has; charts without are compared later.
+    fn twice(&mut self, document: &'d Document) {
+        for chart in document.charts().filter(|c| !c.params.is_empty() && !c.name.text.is_empty()) {
+            let name = &*chart.name.text;
+            let first = self.charts.get(name).map(|c| c.name.at.0).filter(|at| *at != chart.name.at.0);
+            if let Some(first) = first.or_else(|| self.plain.get(name).copied()) {
+                self.defined_twice(&chart.name, chart.name.at.0, first);
+            }
+        }
+    }
+
+    fn defined_twice(&mut self, name: &Name, at: Span, first: Span) {
+        let problem = Problem::new(&codes::DEFINED_TWICE, at, say!("`{}` is defined twice", name.text));
+        self.problems.push(problem.related(first, say!("defined here first")));
+    }
+
+    fn instances(&mut self, i: &'d Instance) {
+        let name = &i.chart;
+        if name.text.is_empty() {
+            return; // The name could not be read; the parser has reported it.
+        }
+        let Some(chart) = self.charts.get(&*name.text).copied() else {
+            return self.no_parameters(name);
+        };
+        let Some(values) = self.values(i, chart) else { return };
+        match &i.names {
+            InstanceNames::One(own) if self.has_room(i, chart, 1) => {
+                self.instance(i, chart, own.clone(), &values)
+            }
+            InstanceNames::One(_) => {}
+            InstanceNames::Range(least, most) => {
+                let Some((first, last)) = self.bounds(chart, least, most) else { return };
+                let count = usize::try_from(last.abs_diff(first)).map_or(MOST, |n| n.saturating_add(1));
+                if !self.has_room(i, chart, count) {
+                    return;
+                }
+                let mut values = [vec![None], values].concat();
+                for n in first..=last {
+                    let own = Name::new(format!("{}[{n}]", name.text), name.at.0);
+                    let kind = ExprKind::Literal(Literal::Int(i128::from(n), None));
+                    if let Some(index) = values.first_mut() {
+                        *index = Some(Expr { kind, at: least.at });
+                    }
+                    self.instance(i, chart, own, &values);
+                }
+            }
+        }
+    }
+
+    /// Reports a problem if so many instances more are too large to hold.
+    fn has_room(&mut self, i: &Instance, chart: &Chart, count: usize) -> bool {
+        let size = self.size.saturating_add(count.saturating_mul(chart.items.len() + 1));
+        if size > MOST {
+            let what = say!("the instances have more than {MOST} steps, transitions and variables together");
+            self.problems.push(Problem::new(&codes::TOO_LARGE, i.at.0, what));
+            return false;
+        }
+        self.size = size;
+        true
+    }
+
+    fn no_parameters(&mut self, name: &Name) {
+        let problem = match self.plain.get(&*name.text) {
+            Some(at) => {
+                let what = say!("the chart `{}` has no parameters, so it has no instances", name.text);
+                Problem::new(&codes::WRONG_KIND, name.at.0, what)
+                    .related(*at, say!("declared here"))
+                    .help(say!("write `chart {}(i : INT) {{ … }}`", name.text))
+            }
+            None => {
+                let what = say!("there is no chart `{}`", name.text);
+                Problem::new(&codes::UNKNOWN_CHART, name.at.0, what)
+            }
+        };
+        self.problems.push(problem);
+    }
+
+    /// The first and the last number of a range.
+    fn bounds(&mut self, chart: &Chart, least: &Expr, most: &Expr) -> Option<(i64, i64)> {
+        if let Some(index) = chart.params.first()
+            && !index.ty.is_integer()
+        {
+            let what = say!(
+                "the numbers of a range are values of `{}`, which is a {} and no whole number",
+                index.name.text,
+                index.ty
+            );
+            let problem = Problem::new(&codes::WRONG_TYPE, least.at.0, what);
+            self.problems.push(problem.related(index.name.at.0, say!("declared here")));
+            return None;
+        }
+        let (first, last) = (self.bound(least)?, self.bound(most)?);
+        if first > last {
+            let what = say!("the range {first}..{last} has no numbers");
+            self.problems.push(Problem::new(&codes::EMPTY_RANGE, least.at.0, what));
+            return None;
+        }
+        Some((first, last))
+    }
+
+    fn bound(&mut self, e: &Expr) -> Option<i64> {
+        let constant = |path: &Path| match path.names.as_slice() {
+            [name] => self.constants.get(&*name.text).copied(),
+            _ => None,
+        };
+        let value = match &e.kind {
+            ExprKind::Path(path) => constant(path),
+            kind => kind.whole(),
+        };
+        let value = value.and_then(|v| i64::try_from(v).ok());
+        if value.is_none() && e.is_read() {
+            let what =
+                say!("the bounds of a range are whole numbers, or constants of the file that are such");
+            self.problems.push(Problem::new(&codes::NOT_CONSTANT, e.at.0, what));
+        }
+        value
+    }
+
+    /// The value of each parameter in their order, without the first one in a range.
+    fn values(&mut self, i: &Instance, chart: &Chart) -> Option<Vec<Option<Expr>>> {
+        let given = usize::from(matches!(i.names, InstanceNames::Range(..)));
+        let params = chart.params.get(given..).unwrap_or_default();
+        let mut values = vec![None; params.len()];
+        let before = self.problems.len();
+        for (place, arg) in i.args.iter().enumerate() {
+            let place = match &arg.name {
+                Some(name) => params.iter().position(|p| p.name.text == name.text),
+                None => Some(place).filter(|p| *p < params.len()),
+            };
+            match place.and_then(|p| values.get_mut(p)) {
+                Some(value @ None) if !arg.output => *value = Some(arg.value.clone()),
+                place => {
+                    let again = place.is_some() && !arg.output;
+                    self.wrong_argument(chart, arg, again);
+                }
+            }
+        }
+        for (value, param) in values.iter().zip(params) {
+            if value.is_none() {
+                let what = say!("the parameter `{}` of `{}` has no value", param.name.text, chart.name.text);
+                let problem = Problem::new(&codes::WRONG_ARGUMENTS, i.chart.at.0, what);
+                self.problems.push(problem.related(param.name.at.0, say!("declared here")));
+            }
+        }
+        for arg in &i.args {
+            self.captured(chart, &arg.value);
+        }
+        (self.problems.len() == before).then_some(values)
+    }
+
+    fn wrong_argument(&mut self, chart: &Chart, arg: &Arg, again: bool) {
+        let what = match &arg.name {
+            Some(name) if again => say!("`{}` has two values", name.text),
+            Some(name) => {
+                say!("`{}` has no parameter `{}` that can be given here", chart.name.text, name.text)
+            }
+            None if again => say!("this parameter of `{}` has two values", chart.name.text),
+            None => say!("`{}` has fewer parameters", chart.name.text),
+        };
+        let at = arg.name.as_ref().map_or(arg.value.at.0, |n| n.at.0);
+        let problem = Problem::new(&codes::WRONG_ARGUMENTS, at, what);
+        self.problems.push(problem.related(chart.name.at.0, say!("declared here")));
+    }
+
+    /// Reports a name in the value of a parameter that means another thing inside of the chart.
+    fn captured(&mut self, chart: &Chart, value: &Expr) {
+        let mut names = Names(Vec::new());
+        visit_mut::expr(&mut value.clone(), &mut names);
+        for (name, at) in names.0 {
+            let own = chart.vars().flat_map(|v| &v.names).find(|n| n.text == name);
+            if let Some(own) = own {
+                let what = say!("`{name}` is also a variable of the chart `{}`", chart.name.text);
+                let problem = Problem::new(&codes::DEFINED_TWICE, at, what);
+                let help =
+                    say!("the value of a parameter is one of the file; give one of the two another name");
+                self.problems.push(problem.related(own.at.0, say!("declared here")).help(help));
+            }
+        }
+    }
+
+    fn instance(&mut self, i: &Instance, chart: &'d Chart, own: Name, values: &[Option<Expr>]) {
+        if own.text.is_empty() {
+            return; // The name could not be read; the parser has reported it.
+        }
+        let first = self.named.get(&own.text).or_else(|| self.plain.get(&*own.text)).copied();
+        let first = first.or_else(|| self.charts.get(&*own.text).map(|c| c.name.at.0));
+        if let Some(first) = first {
+            let at = if own.at.0 == i.chart.at.0 { i.at.0 } else { own.at.0 };
+            return self.defined_twice(&own, at, first);
+        }
+        self.named.insert(own.text.clone(), own.at.0);
+        self.made.push((&chart.name.text, own.text.clone()));
+        let constants = chart.params.iter().zip(values).map(|(p, v)| constant(p, v.clone()));
+        let mut items: Vec<ChartItem> = constants.map(ChartItem::Var).collect();
+        items.extend(chart.items.iter().cloned());
+        let mut made = Chart {
+            // The drawing of all instances is the one chart: problems and references lead there.
+            name: Name::new(own.text, chart.name.at.0),
+            params: Vec::new(),
+            comment: i.comment.clone().or_else(|| chart.comment.clone()),
+            items,
+            kind: chart.kind,
+            every: chart.every,
+            at: chart.at,
+        };
+        let numbers = chart.params.iter().zip(values).filter_map(|(p, v)| {
+            let number = i64::try_from(v.as_ref()?.kind.whole()?).ok()?;
+            Some((&*p.name.text, number))
+        });
+        let mut numbered = Numbered { numbers: numbers.collect(), charts: &self.charts };
+        visit_mut::chart(&mut made, &mut numbered);
+        for item in made.items.iter_mut() {
+            if let ChartItem::Var(v) = item {
+                v.init.iter_mut().chain(&mut v.safe).for_each(|e| visit_mut::expr(e, &mut numbered));
+            }
+        }
+        self.items.push(Item::Chart(made));
+    }
+
+    /// The places of a drawing are those of each instance.
+    fn layouts(&mut self, document: &Document) {
+        for item in &document.items {
+            let Item::Layout(l) = item else { continue };
+            for (_, own) in self.made.iter().filter(|(chart, _)| **chart == *l.chart.text) {
+                let chart = Name::new(own.clone(), l.chart.at.0);
+                self.items.push(Item::Layout(Layout { chart, ..l.clone() }));
+            }
+        }
+    }
+
+    fn unused(&mut self, document: &Document) {
+        if document.items.iter().any(|i| matches!(i, Item::Instance(i) if i.chart.text.is_empty())) {
+            return;
+        }
+        for chart in document.charts().filter(|c| !c.params.is_empty()) {
+            let named = |i: &Item| matches!(i, Item::Instance(i) if i.chart.text == chart.name.text);
+            if document.items.iter().any(named) {
+                continue;
+            }
+            let name = &chart.name.text;
+            let what = say!("the chart `{name}` has parameters and no instance, so it never runs");
+            let problem = Problem::new(&codes::CHART_UNUSED, chart.name.at.0, what);
+            self.problems
+                .push(problem.help(say!("write `instance {name}[1..6]` or `instance Left : {name}(1)`")));
+        }
+    }
+}
+
+/// A parameter as a constant of its instance.
+fn constant(param: &Param, value: Option<Expr>) -> VarDecl {
+    VarDecl {
+        kind: VarKind::Const,
+        names: vec![param.name.clone()],
+        array: None,
+        ty: param.ty,
+        init: value,
+        address: None,
+        inverted: false,
+        retain: false,
+        safe: None,
+        comment: None,
+        at: param.name.at,
+    }
+}
+
+/// The first names of all paths of an expression.
+struct Names(Vec<(Box<str>, Span)>);
+
+impl Visitor for Names {
+    fn path(&mut self, path: &mut Path, _: Use, at: Span) {
+        self.0.extend(path.names.first().map(|n| (n.text.clone(), at)));
+    }
+}
+
+/// Puts the number of a parameter into the names of instances: `Axis[i + 1]` becomes `Axis[4]`.
+struct Numbered<'n, 'd> {
+    numbers: HashMap<&'d str, i64>,
+    charts: &'n HashMap<&'d str, &'d Chart>,
+}
+
+impl Numbered<'_, '_> {
+    fn number(&self, index: Index<'_>) -> Option<i64> {
+        match index {
+            Index::Number(n) => Some(n),
+            Index::Parameter(parameter, added) => self.numbers.get(parameter)?.checked_add(added),
+        }
+    }
+}
+
+impl Visitor for Numbered<'_, '_> {
+    /// An instance as an argument, `INITCHART(Axis[i])`, is read as an element of an array.
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Element(path, index, None) = &e.kind else { return };
+        let ([name], [index]) = (path.names.as_slice(), index.as_slice()) else { return };
+        if !self.charts.contains_key(&*name.text) {
+            return;
+        }
+        let number = match &index.kind {
+            ExprKind::Path(path) if path.names.len() == 1 => self.numbers.get(&*path.text()).copied(),
+            kind => kind.whole().and_then(|n| i64::try_from(n).ok()),
+        };
+        if let Some(number) = number {
+            let name = Name::new(format!("{}[{number}]", name.text), name.at.0);
+            e.kind = ExprKind::Path(Path { names: vec![name] });
+        }
+    }
+
+    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+        if path.names.len() > 1 {
+            path.names.first_mut().into_iter().for_each(|n| self.chart_name(n));
+        }
+    }
+
+    fn chart_name(&mut self, name: &mut Name) {
+        if let Some((chart, index @ Index::Parameter(..))) = instance_of(&name.text)
+            && let Some(number) = self.number(index)
+        {
+            name.text = format!("{chart}[{number}]").into();
+        }
+    }
+
+    fn all_bodies(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,102 @@
+//! Instances of charts with parameters, as charts of the naive engine.
+
+use std::collections::BTreeMap;
+
+use g7_model::{Chart, Document, Expr, ExprKind, InstanceNames, Item, Literal, Name, VarDecl, VarKind};
+
+use super::value::{Run, bad};
+
+/// A chart that runs: its text, its name, and the values of its parameters.
+pub(super) struct Made<'d> {
+    pub(super) chart: &'d Chart,
+    pub(super) name: String,
+    pub(super) constants: Vec<VarDecl>,
+}
+
+impl Made<'_> {
+    /// The whole numbers among the values, for names such as `Axis[i + 1]`.
+    pub(super) fn numbers(&self) -> BTreeMap<String, i128> {
+        let number = |v: &VarDecl| Some((v.names[0].text.to_string(), v.init.as_ref()?.kind.whole()?));
+        self.constants.iter().filter_map(number).collect()
+    }
+}
+
+/// The charts that an item of a file stands for.
+pub(super) fn charts_of<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'d>>> {
+    let i = match item {
+        Item::Chart(chart) if chart.params.is_empty() => {
+            return Ok(vec![Made { chart, name: chart.name.text.to_string(), constants: Vec::new() }]);
+        }
+        Item::Instance(i) => i,
+        _ => return Ok(Vec::new()),
+    };
+    let Some(chart) = doc.charts().find(|c| c.name == i.chart || c.name.text == i.chart.text) else {
+        return bad(format!("no chart {}", i.chart.text));
+    };
+    let mut all: Vec<(String, Vec<Expr>)> = Vec::new();
+    match &i.names {
+        InstanceNames::One(name) => all.push((name.text.to_string(), Vec::new())),
+        InstanceNames::Range(least, most) => {
+            for n in whole(doc, least)?..=whole(doc, most)? {
+                let kind = ExprKind::Literal(Literal::Int(n, None));
+                all.push((format!("{}[{n}]", chart.name.text), vec![Expr { kind, at: i.at }]));
+            }
+        }
+    }
+    all.into_iter()
+        .map(|(name, mut values)| {
+            for param in &chart.params[values.len()..] {
+                let by_name = |n: &Name| n.text == param.name.text;
+                let named = i.args.iter().find(|a| a.name.as_ref().is_some_and(by_name));
+                let place = values.len() - usize::from(matches!(i.names, InstanceNames::Range(..)));
+                let Some(value) = named.or(i.args.get(place).filter(|a| a.name.is_none())) else {
+                    return bad(format!("no value of {}", param.name.text));
+                };
+                values.push(value.value.clone());
+            }
+            let constants = chart.params.iter().zip(values).map(|(p, value)| VarDecl {
+                kind: VarKind::Const,
+                names: vec![p.name.clone()],
+                array: None,
+                ty: p.ty,
+                init: Some(value),
+                address: None,
+                inverted: false,
+                retain: false,
+                safe: None,
+                comment: None,
+                at: i.at,
+            });
+            Ok(Made { chart, name, constants: constants.collect() })
+        })
+        .collect()
+}
+
+/// A bound: a number, or a constant of the file.
+fn whole(doc: &Document, e: &Expr) -> Run<i128> {
+    if let Some(n) = e.kind.whole() {
+        return Ok(n);
+    }
+    let name = e.kind.variable().unwrap_or_default();
+    let constant = doc.items.iter().find_map(|i| match i {
+        Item::Var(v) if v.names.iter().any(|n| *n.text == *name) => v.init.as_ref()?.kind.whole(),
+        _ => None,
+    });
+    constant.map_or_else(|| bad(format!("no number {name}")), Ok)
+}
+
+/// `Axis[i + 1]` as the instance whose parameters are these sees it: `Axis[4]`.
+pub(super) fn numbered(name: &str, numbers: &BTreeMap<String, i128>) -> String {
+    let Some((chart, inner)) = name.strip_suffix(']').and_then(|n| n.split_once('[')) else {
+        return name.to_owned();
+    };
+    let words: Vec<&str> = inner.split(' ').collect();
+    let number = |word: &str| numbers.get(word).copied().or_else(|| word.parse().ok());
+    let value = match words[..] {
+        [one] => number(one),
+        [one, "+", n] => number(one).zip(number(n)).map(|(a, b)| a + b),
+        [one, "-", n] => number(one).zip(number(n)).map(|(a, b)| a - b),
+        _ => None,
+    };
+    value.map_or_else(|| name.to_owned(), |v| format!("{chart}[{v}]"))
+}

@@ -1,0 +1,47 @@
+// The instances of charts with parameters: several parts of a run have one symbol, and a drawing shows
+// those of the chosen instance.
+import { chartOf } from './ids';
+
+/** A step or transition of a run. */
+export interface Part {
+  id: string;
+  instance?: string | null;
+}
+
+/** The instances of each chart with parameters, by the name of the chart, in the order of the program. */
+export function instancesOf(steps: readonly Part[]): Map<string, string[]> {
+  const found = new Map<string, Set<string>>();
+  for (const step of steps) {
+    if (!step.instance) continue;
+    const chart = chartOf(step.id);
+    found.set(chart, (found.get(chart) ?? new Set()).add(step.instance));
+  }
+  return new Map([...found].map(([chart, names]) => [chart, [...names]]));
+}
+
+/** The name that the chart of a symbol has in the program. */
+export type Chosen = (chart: string) => string;
+
+/** True if a part is that of the chosen instance, or of a chart without parameters. */
+export function isShown(part: Part | undefined, chosen: Chosen): part is Part {
+  return part !== undefined && (!part.instance || part.instance === chosen(chartOf(part.id)));
+}
+
+class Choices {
+  /** The chosen instances, by file and chart. */
+  #chosen: ReadonlyMap<string, string> = $state.raw(new Map());
+
+  /** The instance that the drawing of a chart shows: the chosen one, otherwise the first. A chart without
+   * parameters is its own. */
+  of(file: string, chart: string, instances: ReadonlyMap<string, readonly string[]>): string {
+    const names = instances.get(chart);
+    const chosen = this.#chosen.get(`${file}\n${chart}`);
+    return chosen !== undefined && names?.includes(chosen) ? chosen : (names?.[0] ?? chart);
+  }
+
+  choose(file: string, chart: string, instance: string): void {
+    this.#chosen = new Map(this.#chosen).set(`${file}\n${chart}`, instance);
+  }
+}
+
+export const choices = new Choices();
