@@ -36,6 +36,21 @@ chart G1 {
 }
 `;
 
+// Three axes, drawn once; each with a situation of its own.
+const AXES = `input go : ARRAY[1..3] OF BOOL
+output motor : ARRAY[1..3] OF BOOL
+
+chart Axis(i : INT) {
+  initial step 1
+  step 2 { N motor[i] }
+  1 -> 2 when go[i]
+  2 -> 1 when not go[i]
+}
+
+instance Axis[1..2]
+instance Last : Axis(3)
+`;
+
 const FAULT = `input a : BOOL
 var n, q : INT
 
@@ -55,6 +70,7 @@ before(async () => {
     'lamp.g7': LAMP,
     'fleeting.g7': FLEETING,
     'fault.g7': FAULT,
+    'axes.g7': AXES,
     'tanks.g7': example('two-tanks/chart.g7'),
     'two-tanks.svg': example('two-tanks/two-tanks.svg'),
     'bead-sorter/exercise-1.g7': example('bead-sorter/exercise-1.g7'),
@@ -96,6 +112,28 @@ test('scan by scan: an input is turned, the step follows, its output is lit', as
   await oneScan(p);
   await until(async () => (await active(p)) === '1', 'step 1 is active');
   assert.equal(await p.getByRole('switch', { name: 'lamp', exact: true }).getAttribute('aria-checked'), 'true');
+  await end(p);
+});
+
+test('the instances of a chart: a table of situations, and the marks of the chosen one', async () => {
+  const p = await open(b, site, 'axes.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'go[2]', exact: true }).click();
+  await oneScan(p);
+  const rows = async () => (await p.locator('section[aria-label="Instances"] tbody tr').allInnerTexts()).map((row) => row.replace(/\s+/g, ' ').trim());
+  await until(async () => (await rows()).join(', ') === 'Axis[1] 1, Axis[2] 2, Last 1', 'a row for each instance');
+  const mark = () => p.locator('.live path.on').getAttribute('d');
+  const here = p.locator('nav [aria-current="page"]');
+  assert.equal(await here.innerText(), 'Axis[1]');
+  const first = await mark();
+  await p.getByRole('button', { name: 'Axis[2]', exact: true }).click();
+  await until(async () => (await here.innerText()) === 'Axis[2]', 'the drawing shows the second instance');
+  await until(async () => (await mark()) !== first, 'another step is marked');
+  await p.getByRole('button', { name: 'Last', exact: true }).click();
+  await until(async () => (await mark()) === first, 'the step of the last one');
+  await p.getByRole('switch', { name: 'go[2]', exact: true }).click();
+  await oneScan(p);
+  await until(async () => (await rows())[1] === 'Axis[2] 1', 'back again');
   await end(p);
 });
 

@@ -1,5 +1,6 @@
 //! Completion: the words that are possible at a place of the text.
 
+use g7_model::instances::drawn_for;
 use g7_model::words::{self, Told, Word};
 use g7_model::{Document, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, say};
 use g7_syntax::{Token, TokenKind};
@@ -107,7 +108,7 @@ impl Place<'_> {
                 let one = |p: ProfileName| choice(p.name(), "profile", Said::foreign(p.does()[0]), p.name());
                 ProfileName::ALL.map(one).into()
             }
-            (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout") => self.charts(),
+            (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout" | "instance") => self.charts(),
             (_, "with") => self.others("plant"),
             _ if self.begins(last) => match around {
                 Around::File => keywords(words::FILE),
@@ -208,7 +209,13 @@ impl Place<'_> {
 
     /// The names that can follow the dot.
     fn members(&self) -> Vec<Choice> {
-        let owner = self.before.iter().rev().nth(1).map(|t| self.word(t).trim_matches('`')).unwrap_or("");
+        let mut before = self.before.iter().rev().skip(1).map(|t| self.word(t));
+        let mut owner = before.next().unwrap_or("");
+        if owner == "]" {
+            // `Axis[3].` has the members of `Axis`.
+            owner = before.by_ref().skip_while(|w| *w != "[").nth(1).unwrap_or("");
+        }
+        let owner = drawn_for(self.document, owner.trim_matches('`'));
         let mut found = Vec::new();
         for n in names(self.document) {
             let name = &*n.name.text;

@@ -73,6 +73,29 @@ pub fn uninstantiated(document: &Document) -> Cow<'_, Document> {
     Cow::Owned(own)
 }
 
+/// The chart that is drawn for a name: `Axis` for `Axis[3]`, and for `Lift` of `instance Lift : Axis(7)`.
+pub fn drawn_for<'n>(document: &'n Document, name: &'n str) -> &'n str {
+    if let Some((chart, _)) = instance_of(name) {
+        return chart;
+    }
+    own_instances(document).find(|(own, _)| *own == name).map_or(name, |(_, chart)| chart)
+}
+
+/// The instances of a chart that have a name of their own: `Lift` of `instance Lift : Axis(7)`.
+pub fn own_names<'d>(document: &'d Document, chart: &'d str) -> impl Iterator<Item = &'d str> {
+    own_instances(document).filter(move |(_, of)| *of == chart).map(|(own, _)| own)
+}
+
+/// The instances that have a name of their own, each with its chart.
+pub fn own_instances(document: &Document) -> impl Iterator<Item = (&str, &str)> {
+    document.items.iter().filter_map(|i| match i {
+        Item::Instance(Instance { chart, names: InstanceNames::One(own), .. }) => {
+            Some((&*own.text, &*chart.text))
+        }
+        _ => None,
+    })
+}
+
 struct Maker<'d> {
     /// The charts with parameters.
     charts: HashMap<&'d str, &'d Chart>,

@@ -3,6 +3,7 @@
 use g7_compile::resolve::{of_profile, with_switch};
 use g7_edit::ChartSort;
 use g7_ide::File;
+use g7_model::instances::{drawn_for, own_names};
 use g7_model::{Document, Nanos, ProfileName, Switch};
 use serde::Serialize;
 
@@ -68,6 +69,10 @@ struct ChartRow {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "types", ts(as = "Option<Vec<String>>"))]
     params: Vec<String>,
+    /// Its instances that have a name of their own.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    #[cfg_attr(feature = "types", ts(as = "Option<Vec<String>>"))]
+    instances: Vec<String>,
     /// The chart and the step that this chart is the expansion of, or that enclose it.
     #[serde(skip_serializing_if = "Option::is_none")]
     of: Option<[String; 2]>,
@@ -150,6 +155,7 @@ fn charts(file: &File) -> Vec<ChartRow> {
             to,
             steps: c.steps().count(),
             transitions: c.transitions().count(),
+            instances: own_names(document, &c.name.text).map(str::to_owned).collect(),
             params: c.params.iter().map(|p| p.name.text.to_string()).collect(),
             of: owner(document, &c.name.text),
         }
@@ -160,7 +166,7 @@ fn charts(file: &File) -> Vec<ChartRow> {
 /// The macro-step that a chart is the expansion of, or the step that encloses it.
 fn owner(document: &Document, name: &str) -> Option<[String; 2]> {
     let mut steps = document.charts().flat_map(|c| c.steps().map(move |s| (c, s)));
-    let (chart, step) = steps.find(|(_, s)| opens(s).any(|opened| opened == name))?;
+    let (chart, step) = steps.find(|(_, s)| opens(s).any(|opened| drawn_for(document, opened) == name))?;
     Some([chart.name.text.to_string(), step.name.text.to_string()])
 }
 

@@ -5,6 +5,7 @@ import { actionOf, kindOf } from '../lib/ids';
 import { page } from '../lib/page';
 import type { Box, Edited, Gesture } from '../lib/protocol';
 import type { Placed as Item } from '../lib/redrawn';
+import { choices, drawnFor } from '../lib/instances.svelte';
 import { shell } from '../lib/shell.svelte';
 import { Scene } from './scene';
 
@@ -150,8 +151,11 @@ class Editor {
 
   /** Shows the chart that a macro-step or an enclosing step opens. */
   open(item: Item): boolean {
-    const to = item.macro ?? item.encloses?.[0] ?? this.#enclosed(item);
-    if (!to || !this.file?.look.charts.some((c) => c.name === to)) return false;
+    const name = item.macro ?? item.encloses?.[0] ?? this.#enclosed(item);
+    const to = name && this.file ? drawnFor(this.file.look.charts, name) : undefined;
+    if (!name || !to || !this.file) return false;
+    // An instance has the drawing of its chart; a run shows its marks there.
+    if (to !== name) choices.choose(this.file.name, to, name);
     shell.show(this.file, to);
     return true;
   }

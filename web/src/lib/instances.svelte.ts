@@ -1,6 +1,7 @@
 // The instances of charts with parameters: several parts of a run have one symbol, and a drawing shows
 // those of the chosen instance.
 import { chartOf } from './ids';
+import type { ChartRow } from './protocol';
 
 /** A step or transition of a run. */
 export interface Part {
@@ -17,6 +18,13 @@ export function instancesOf(steps: readonly Part[]): Map<string, string[]> {
     found.set(chart, (found.get(chart) ?? new Set()).add(step.instance));
   }
   return new Map([...found].map(([chart, names]) => [chart, [...names]]));
+}
+
+/** The chart that is drawn for a name: `Axis` for `Axis[3]`, and for an instance with a name of its own. */
+export function drawnFor(charts: readonly ChartRow[], name: string): string | undefined {
+  const base = name.replace(/\[[^\]]*\]$/, '');
+  const found = charts.find((c) => c.name === name) ?? charts.find((c) => c.params && c.name === base) ?? charts.find((c) => c.instances?.includes(name));
+  return found?.name;
 }
 
 /** The name that the chart of a symbol has in the program. */

@@ -79,6 +79,8 @@ export type ChartRow = {
   transitions: number;
   /** The names of its parameters. */
   params?: Array<string>;
+  /** Its instances that have a name of their own. */
+  instances?: Array<string>;
   /** The chart and the step that this chart is the expansion of, or that enclose it. */
   of?: [string, string];
 };

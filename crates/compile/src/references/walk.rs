@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::instances::uninstantiated;
+use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
     Block, Chart, ChartItem, Document, Index, Instance, InstanceNames, Item, Name, Order, Placed, Plant,
@@ -36,13 +36,7 @@ pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
 
 /// The parts of an instance with a name of its own are defined in its chart with parameters.
 fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
-    let own = |i: &'_ Item| match i {
-        Item::Instance(Instance { chart, names: InstanceNames::One(name), .. }) => {
-            Some((name.text.to_string(), chart.text.to_string()))
-        }
-        _ => None,
-    };
-    let own: HashMap<String, String> = doc.items.iter().filter_map(own).collect();
+    let own: HashMap<&str, &str> = own_instances(doc).collect();
     if own.is_empty() {
         return;
     }
@@ -58,9 +52,9 @@ fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
             | Definition::PlantItem { .. } => None,
         };
         if let Some(home) = home
-            && let Some(chart) = own.get(home)
+            && let Some(chart) = own.get(home.as_str())
         {
-            home.clone_from(chart);
+            *home = (*chart).to_owned();
         }
     }
 }

@@ -36,7 +36,7 @@ export const run = {
   'run.dropBreak': ['Remove {name}', 'Retirer {name}', 'Retirar {name}'],
   'run.instances': ['Instances', 'Instances', 'Instâncias'],
   'run.instance': ['Instance', 'Instance', 'Instância'],
-  'run.situation': ['Situation', 'Situation', 'Situação'],
+  'run.situationHead': ['Situation', 'Situation', 'Situação'],
   'run.compare': ['Compare profiles', 'Comparer les profils', 'Comparar perfis'],
   'run.compareWith': ['Compare with', 'Comparer avec', 'Comparar com'],
   'run.compareHint': ['Both begin anew and get the same inputs; they stop at the first difference.', 'Les deux repartent du début avec les mêmes entrées ; arrêt à la première différence.', 'Ambos recomeçam com as mesmas entradas; param na primeira diferença.'],
