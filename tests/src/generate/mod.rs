@@ -3,6 +3,7 @@
 //! visit many situations.
 
 mod body;
+mod instances;
 mod rng;
 mod script;
 mod sight;

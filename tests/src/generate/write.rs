@@ -5,6 +5,7 @@ use g7_model::{Lasting, ProfileName, Qualifier, Type};
 
 use super::Weights;
 use super::body::{self, Driven, Targets};
+use super::instances::instances;
 use super::rng::Rng;
 use super::sight::{Sight, duration};
 use super::skeleton::{Skeleton, SkeletonChart, skeleton};
@@ -69,6 +70,7 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
     for at in 0..skeleton.charts.len() {
         chart(rng, &mut world, &skeleton, at, &mut out);
     }
+    instances(rng, &outside, &mut out);
     out
 }
 
