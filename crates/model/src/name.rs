@@ -29,18 +29,20 @@ pub enum Index<'n> {
     Parameter(&'n str, i64),
 }
 
-/// Takes the name of an instance of a range apart: the chart with parameters, and the number. None for other names.
+/// Takes the name of an instance of a range apart: the chart with parameters, and the number. None for other names, and
+/// for a number that is written in another way (`Axis[03]`), since a name has one spelling.
 pub fn instance_of(name: &str) -> Option<(&str, Index<'_>)> {
     let (chart, inner) = name.strip_suffix(']')?.rsplit_once('[')?;
-    let index = match inner.parse() {
-        Ok(number) => Index::Number(number),
-        Err(_) => {
+    let whole = |text: &str| text.parse::<i64>().ok().filter(|n| n.to_string() == text);
+    let index = match whole(inner) {
+        Some(number) => Index::Number(number),
+        None => {
             let mut parts = inner.split(' ');
             let parameter = parts.next()?;
             let added = match (parts.next(), parts.next(), parts.next()) {
                 (None, ..) => 0,
-                (Some("+"), Some(n), None) => n.parse().ok()?,
-                (Some("-"), Some(n), None) => n.parse::<i64>().ok()?.checked_neg()?,
+                (Some("+"), Some(n), None) => whole(n).filter(|n| *n >= 0)?,
+                (Some("-"), Some(n), None) => -whole(n).filter(|n| *n >= 0)?,
                 _ => return None,
             };
             let plain = |c: char| c.is_alphanumeric() || c == '_';

@@ -3,7 +3,7 @@
 use super::Printer;
 use crate::quote;
 use g7_iec::constant;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Path, UnaryOp, instance_of};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Name, Path, UnaryOp};
 
 impl<'a> Printer<'a> {
     pub(super) fn expr(&mut self, e: &Expr) {
@@ -140,13 +140,15 @@ impl<'a> Printer<'a> {
     }
 
     pub(super) fn path(&mut self, path: &Path) {
+        let number = |name: &Name| name.text.starts_with(|c: char| c.is_ascii_digit());
         for (i, name) in path.names.iter().enumerate() {
             if i > 0 {
                 self.push(".");
                 self.name(&name.text);
-            } else if path.names.len() > 1 && instance_of(&name.text).is_some() {
+            } else if !number(name) && path.names.get(1).is_some_and(|n| !number(n)) {
+                // A number behind the index would be read as that of a bit.
                 self.chart_name(&name.text);
-            } else if name.text.starts_with(|c: char| c.is_ascii_digit()) {
+            } else if number(name) {
                 // A bare number would be read as a number, not as a name.
                 self.push(&quote::quote(&name.text, '`'));
             } else {

@@ -1,12 +1,14 @@
 //! Random documents.
 
-use crate::expressions::{block, direct, duration, element, expr, name, path, simple_stmt, text, ty, values};
+use crate::expressions::{
+    args, block, chart_name, direct, duration, element, expr, name, path, simple_stmt, text, ty, values,
+};
 use crate::world;
 use g7_model::{
     Action, ActionKind, Array, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
-    Function, Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile, ProfileName, Qualifier,
-    Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, Transition, VarDecl,
-    VarKind, Work,
+    Function, Instance, InstanceNames, Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile,
+    ProfileName, Qualifier, Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target,
+    TargetPlc, Transition, VarDecl, VarKind, Work,
 };
 use proptest::prelude::*;
 
@@ -91,11 +93,11 @@ fn order() -> impl Strategy<Value = Order> {
     let situation =
         prop_oneof![Just(Situation::Init), Just(Situation::Current), names(0..3).prop_map(Situation::Steps),];
     prop_oneof![
-        (name(), situation).prop_map(|(n, s)| Order::Force(n, s)),
-        name().prop_map(Order::Enable),
-        name().prop_map(Order::Mask),
-        name().prop_map(Order::Call),
-        name().prop_map(Order::Enclose),
+        (chart_name(), situation).prop_map(|(n, s)| Order::Force(n, s)),
+        chart_name().prop_map(Order::Enable),
+        chart_name().prop_map(Order::Mask),
+        chart_name().prop_map(Order::Call),
+        chart_name().prop_map(Order::Enclose),
     ]
 }
 
@@ -199,11 +201,12 @@ fn chart_item() -> impl Strategy<Value = ChartItem> {
 fn chart() -> impl Strategy<Value = Chart> {
     let kind = prop::sample::select(vec![ChartKind::Chart, ChartKind::Expansion, ChartKind::Task]);
     let items = prop::collection::vec(chart_item(), 0..6);
-    (kind, name(), comment(), prop::option::of(duration()), items).prop_map(
-        |(kind, name, comment, every, mut items)| {
+    let params = prop::collection::vec(param(), 0..3);
+    (kind, name(), params, comment(), prop::option::of(duration()), items).prop_map(
+        |(kind, name, params, comment, every, mut items)| {
             chain(&mut items);
             let every = every.filter(|_| kind == ChartKind::Chart);
-            Chart { kind, name, params: Vec::new(), comment, every, items, at: at() }
+            Chart { kind, name, params, comment, every, items, at: at() }
         },
     )
 }
@@ -231,6 +234,18 @@ pub(crate) fn param() -> impl Strategy<Value = Param> {
     (name(), ty()).prop_map(|(name, ty)| Param { name, ty })
 }
 
+fn instance() -> impl Strategy<Value = Instance> {
+    let range = (expr(), expr()).prop_map(|(a, b)| InstanceNames::Range(Box::new(a), Box::new(b)));
+    let names = prop_oneof![name().prop_map(InstanceNames::One), range];
+    (name(), names, args(expr()), comment()).prop_map(|(chart, names, args, comment)| Instance {
+        chart,
+        names,
+        args,
+        comment,
+        at: at(),
+    })
+}
+
 fn item() -> impl Strategy<Value = Item> {
     let profile = (prop::sample::select(ProfileName::ALL.to_vec()), prop::collection::vec(switch(), 0..3))
         .prop_map(|(name, switches)| {
@@ -246,6 +261,7 @@ fn item() -> impl Strategy<Value = Item> {
         1 => prop::sample::select(TargetPlc::ALL.to_vec()).prop_map(|t| Item::Target(t, at())),
         3 => variable().prop_map(Item::Var),
         4 => chart().prop_map(Item::Chart),
+        2 => instance().prop_map(Item::Instance),
         1 => named_action().prop_map(Item::Action),
         1 => section().prop_map(Item::Section),
         1 => function,

@@ -68,8 +68,25 @@ pub(crate) fn name() -> impl Strategy<Value = Name> {
     .prop_map(|text| Name::new(text, Span::default()))
 }
 
+/// The name of a chart where it is used; of an instance it has an index.
+pub(crate) fn chart_name() -> impl Strategy<Value = Name> {
+    let index = prop_oneof!["-?[0-9]{1,3}", "[a-z]{1,3}", "[a-z]{1,3} [-+] [0-9]{1,3}"];
+    (name(), prop::option::of(index)).prop_map(|(name, index)| match index {
+        // As it is read: without zeros at the start.
+        Some(index) => match index.parse::<i64>() {
+            Ok(number) => Name::new(format!("{}[{number}]", name.text), Span::default()),
+            Err(_) => Name::new(format!("{}[{index}]", name.text), Span::default()),
+        },
+        None => name,
+    })
+}
+
 pub(crate) fn path() -> impl Strategy<Value = Path> {
-    prop::collection::vec(name(), 1..4).prop_map(|names| Path { names })
+    let first = prop_oneof![3 => name(), 1 => chart_name()];
+    (first, prop::collection::vec(name(), 0..3)).prop_map(|(first, mut names)| {
+        names.insert(0, first);
+        Path { names }
+    })
 }
 
 pub(crate) fn text() -> impl Strategy<Value = Box<str>> {
@@ -183,7 +200,7 @@ pub(crate) fn values() -> impl Strategy<Value = Expr> {
     prop::collection::vec(one, 1..4).prop_map(|list| of(ExprKind::List(list)))
 }
 
-fn args(value: impl Strategy<Value = Expr>) -> impl Strategy<Value = Vec<Arg>> {
+pub(crate) fn args(value: impl Strategy<Value = Expr>) -> impl Strategy<Value = Vec<Arg>> {
     let plain =
         (prop::option::of(name()), value).prop_map(|(name, value)| Arg { name, output: false, value });
     let output =
