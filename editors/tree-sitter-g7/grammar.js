@@ -67,6 +67,7 @@ module.exports = grammar({
         $.target,
         $.variable,
         $.chart,
+        $.instance,
         $.named_action,
         $.section,
         $.function,
@@ -123,10 +124,26 @@ module.exports = grammar({
       seq(
         field("kind", choice(kw("chart"), kw("macrochart"), kw("task"))),
         field("name", $._name),
+        optional($.parameters),
         optional($.comment),
         optional(seq(kw("every"), $.duration)),
         field("body", $.chart_body),
       ),
+    // `instance Axis[1..6]`, `instance Lift : Axis(7)`
+    instance: ($) =>
+      prec.right(
+        seq(
+          kw("instance"),
+          choice(
+            seq(field("chart", $._name), "[", $._expression, "..", $._expression, "]"),
+            seq(field("name", $._name), ":", field("chart", $._name)),
+          ),
+          optional($.arguments),
+          optional($.comment),
+        ),
+      ),
+    // The name of a chart where it is used: that of an instance has an index.
+    _chart_name: ($) => seq($._name, optional(seq(token.immediate("["), $._expression, "]"))),
     chart_body: ($) => seq("{", items($._chart_item), "}"),
     _chart_item: ($) =>
       choice($.variable, $.step, $.transition, $.pre, $.post, $.named_action, $.section),
@@ -135,7 +152,7 @@ module.exports = grammar({
       seq(
         repeat1(choice(kw("initial"), kw("entry"), kw("exit"), kw("enclosing"), kw("step"), kw("macro"))),
         field("name", $._name),
-        optional(seq("=", field("expansion", $._name))),
+        optional(seq("=", field("expansion", $._chart_name))),
         optional("*"),
         optional($.comment),
         optional(field("body", $.step_body)),
@@ -158,7 +175,7 @@ module.exports = grammar({
         $.event_action,
         $.scan_action,
         $.force_order,
-        seq(choice(kw("enable"), kw("mask"), kw("call"), kw("enclose")), $._name),
+        seq(choice(kw("enable"), kw("mask"), kw("call"), kw("enclose")), $._chart_name),
         $.comment,
       ),
     qualified_action: ($) =>
@@ -174,7 +191,7 @@ module.exports = grammar({
     condition: ($) => seq(kw("if"), $._expression),
     event_action: ($) => seq(kw("on"), $._expression, ":", $._work),
     scan_action: ($) => seq(kw("each"), kw("scan"), ":", $._work, optional($.condition)),
-    force_order: ($) => seq(kw("force"), field("chart", $._name), ":=", $.situation),
+    force_order: ($) => seq(kw("force"), field("chart", $._chart_name), ":=", $.situation),
     situation: ($) =>
       choice(kw("INIT"), seq("{", choice(kw("INIT"), "*", optional(commas($._name))), "}")),
     _work: ($) => choice($.assignment, $.call, $.block),
@@ -439,7 +456,16 @@ module.exports = grammar({
     call: ($) => prec(12, seq(field("function", $.path), $.arguments)),
     // The bracket stands close behind the name of the array.
     element: ($) =>
-      prec(12, seq(field("array", $.path), token.immediate("["), commas($._expression), "]", optional($.member))),
+      prec(
+        12,
+        seq(
+          field("array", choice($.path, $.element)),
+          token.immediate("["),
+          commas($._expression),
+          "]",
+          repeat($.member),
+        ),
+      ),
     arguments: ($) => seq(alias($._call_open, "("), optional(commas($.argument)), optional(","), ")"),
     argument: ($) =>
       seq(optional(seq(field("name", $._name), choice(":=", "=>"))), $._expression),

@@ -42,14 +42,14 @@
   "chart" "clearing" "cold" "comment" "const" "do" "drive" "each"
   "else" "elsif" "enable" "enclose" "enclosing" "end_case" "end_for" "end_if"
   "end_repeat" "end_while" "entry" "every" "exit" "expect" "fault" "for"
-  "force" "function" "if" "il" "in" "initial" "input" "inverted"
-  "layout" "ld" "leads" "length" "macro" "macrochart" "mask" "max"
-  "most" "never" "of" "on" "output" "parts" "plant" "post"
-  "pre" "priority" "profile" "prove" "pulse" "rate" "reachable" "release"
-  "repeat" "restart" "retain" "return" "safe" "scan" "section" "seed"
-  "set" "st" "state" "step" "target" "task" "test" "then"
-  "to" "transition" "until" "var" "view" "wait" "when" "while"
-  "with" "within"
+  "force" "function" "if" "il" "in" "initial" "input" "instance"
+  "inverted" "layout" "ld" "leads" "length" "macro" "macrochart" "mask"
+  "max" "most" "never" "of" "on" "output" "parts" "plant"
+  "post" "pre" "priority" "profile" "prove" "pulse" "rate" "reachable"
+  "release" "repeat" "restart" "retain" "return" "safe" "scan" "section"
+  "seed" "set" "st" "state" "step" "target" "task" "test"
+  "then" "to" "transition" "until" "var" "view" "wait" "when"
+  "while" "with" "within"
 ] @keyword
 
 [

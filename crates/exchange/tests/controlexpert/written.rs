@@ -308,7 +308,7 @@ fn charts() -> Vec<(String, Document)> {
         let text = String::from_utf8(std::fs::read(&path).expect("an example")).expect("UTF-8");
         charts.push((path.display().to_string(), under_unity(parse(&text))));
     }
-    // What goes out are the charts of instances.
+    // The charts of instances go out.
     let instances =
         |(name, d): (String, Document)| (name, g7_model::instances::instantiated(&d).0.into_owned());
     let mut charts: Vec<(String, Document)> = charts.into_iter().map(instances).collect();
