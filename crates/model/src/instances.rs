@@ -14,7 +14,7 @@
 //! - All places are those of the one text. The work is bounded by [`MOST`].
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
@@ -22,8 +22,8 @@ use crate::{
     Name, Param, Path, Problem, Span, VarDecl, VarKind, codes, instance_of, say,
 };
 
-/// The greatest number of steps, transitions and other items in all instances together.
-const MOST: usize = 1 << 18;
+/// The greatest length of the text of all instances together, in MiB.
+const MOST: usize = 16;
 
 /// The document with charts for all instances, and the problems of their declarations.
 pub fn instantiated(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
@@ -44,7 +44,6 @@ pub fn instantiated(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
             item => made.items.push(item.clone()),
         }
     }
-    made.layouts(document);
     made.unused(document);
     (Cow::Owned(Document { items: made.items, notes: document.notes.clone() }), made.problems)
 }
@@ -63,13 +62,20 @@ pub fn uninstantiated(document: &Document) -> Cow<'_, Document> {
             c.items.splice(0..0, constants.collect::<Vec<_>>());
         }
     }
-    for item in &document.items {
-        if let Item::Instance(Instance { chart, names: InstanceNames::One(name), .. }) = item {
-            let copy = own.charts().find(|c| c.name.text == chart.text).cloned();
-            let Some(copy) = copy else { continue };
-            own.items.push(Item::Chart(Chart { name: name.clone(), ..copy }));
-        }
-    }
+    let charts: HashMap<&str, &Chart> = own.charts().map(|c| (&*c.name.text, c)).collect();
+    let mut room = Room::default();
+    let copies: Vec<Item> = document
+        .items
+        .iter()
+        .filter_map(|item| {
+            let Item::Instance(Instance { chart, names: InstanceNames::One(name), .. }) = item else {
+                return None;
+            };
+            let copy = charts.get(&*chart.text).filter(|c| room.takes(length(c.at.0), 1))?;
+            Some(Item::Chart(Chart { name: name.clone(), ..(*copy).clone() }))
+        })
+        .collect();
+    own.items.extend(copies);
     Cow::Owned(own)
 }
 
@@ -96,18 +102,47 @@ pub fn own_instances(document: &Document) -> impl Iterator<Item = (&str, &str)> 
     })
 }
 
+/// The length of a place in the text, in bytes.
+fn length(at: Span) -> usize {
+    at.bytes().len()
+}
+
+/// The text of the instances that were made.
+#[derive(Default)]
+struct Room {
+    bytes: usize,
+}
+
+impl Room {
+    /// Takes so many texts of a length; false if they would be too large.
+    fn takes(&mut self, length: usize, count: usize) -> bool {
+        // An instance has a size of its own, however short its text is.
+        let bytes = self.bytes.saturating_add(count.saturating_mul(length + 64));
+        let fits = bytes <= MOST << 20;
+        if fits {
+            self.bytes = bytes;
+        }
+        fits
+    }
+}
+
 struct Maker<'d> {
     /// The charts with parameters.
     charts: HashMap<&'d str, &'d Chart>,
+    /// Their layouts.
+    layouts: HashMap<&'d str, Vec<&'d Layout>>,
+    /// The names of the variables of the file.
+    file: HashSet<&'d str>,
     /// The charts without.
     plain: HashMap<&'d str, Span>,
     /// Whole constants of the file, for the bounds of ranges.
     constants: HashMap<&'d str, i128>,
     items: Vec<Item>,
-    /// The chart, name and declaration of each instance, in the order of the text.
-    made: Vec<(&'d str, Box<str>)>,
+    /// The instances, each with its declaration.
     named: HashMap<Box<str>, Span>,
-    size: usize,
+    /// The charts with parameters that an item `instance` names.
+    used: HashSet<&'d str>,
+    room: Room,
     problems: Vec<Problem>,
 }
 
@@ -121,23 +156,32 @@ impl<'d> Maker<'d> {
                 charts.entry(&*chart.name.text).or_insert(chart);
             }
         }
-        let mut constants = HashMap::new();
+        let (mut constants, mut file, mut layouts) = (HashMap::new(), HashSet::new(), HashMap::new());
         for item in &document.items {
-            if let Item::Var(v) = item
-                && v.kind == VarKind::Const
-                && let Some(value) = v.init.as_ref().and_then(|e| e.kind.whole())
-            {
-                constants.extend(v.names.iter().map(|n| (&*n.text, value)));
+            match item {
+                Item::Var(v) => {
+                    file.extend(v.names.iter().map(|n| &*n.text));
+                    let value = v.init.as_ref().and_then(|e| e.kind.whole());
+                    if let Some(value) = value.filter(|_| v.kind == VarKind::Const) {
+                        constants.extend(v.names.iter().map(|n| (&*n.text, value)));
+                    }
+                }
+                Item::Layout(l) if charts.contains_key(&*l.chart.text) => {
+                    layouts.entry(&*l.chart.text).or_insert_with(Vec::new).push(l);
+                }
+                _ => {}
             }
         }
         let mut made = Maker {
             charts,
+            layouts,
+            file,
             plain,
             constants,
             items: Vec::new(),
-            made: Vec::new(),
             named: HashMap::new(),
-            size: 0,
+            used: HashSet::new(),
+            room: Room::default(),
             problems: Vec::new(),
         };
         made.twice(document);
@@ -168,6 +212,7 @@ impl<'d> Maker<'d> {
         let Some(chart) = self.charts.get(&*name.text).copied() else {
             return self.no_parameters(name);
         };
+        self.used.insert(&chart.name.text);
         let Some(values) = self.values(i, chart) else { return };
         match &i.names {
             InstanceNames::One(own) if self.has_room(i, chart, 1) => {
@@ -176,7 +221,7 @@ impl<'d> Maker<'d> {
             InstanceNames::One(_) => {}
             InstanceNames::Range(least, most) => {
                 let Some((first, last)) = self.bounds(chart, least, most) else { return };
-                let count = usize::try_from(last.abs_diff(first)).map_or(MOST, |n| n.saturating_add(1));
+                let count = usize::try_from(last.abs_diff(first)).unwrap_or(usize::MAX).saturating_add(1);
                 if !self.has_room(i, chart, count) {
                     return;
                 }
@@ -195,14 +240,14 @@ impl<'d> Maker<'d> {
 
     /// Reports a problem if so many instances more are too large to hold.
     fn has_room(&mut self, i: &Instance, chart: &Chart, count: usize) -> bool {
-        let size = self.size.saturating_add(count.saturating_mul(chart.items.len() + 1));
-        if size > MOST {
-            let what = say!("the instances have more than {MOST} steps, transitions and variables together");
+        let places: usize =
+            self.layouts.get(&*chart.name.text).map_or(0, |all| all.iter().map(|l| length(l.at.0)).sum());
+        let fits = self.room.takes(length(chart.at.0) + places, count);
+        if !fits {
+            let what = say!("the charts of all instances together have more than {MOST} MiB of text");
             self.problems.push(Problem::new(&codes::TOO_LARGE, i.at.0, what));
-            return false;
         }
-        self.size = size;
-        true
+        fits
     }
 
     fn no_parameters(&mut self, name: &Name) {
@@ -308,14 +353,16 @@ impl<'d> Maker<'d> {
         self.problems.push(problem.related(chart.name.at.0, say!("declared here")));
     }
 
-    /// Reports a name in the value of a parameter that means another thing inside of the chart.
+    /// Reports a name in the value of a parameter that means another thing inside of the chart. A parameter can be
+    /// named in it, unless the file has that name as well.
     fn captured(&mut self, chart: &Chart, value: &Expr) {
         let mut names = Names(Vec::new());
         visit_mut::expr(&mut value.clone(), &mut names);
         for (name, at) in names.0 {
-            let own = chart.vars().flat_map(|v| &v.names).find(|n| n.text == name);
-            if let Some(own) = own {
-                let what = say!("`{name}` is also a variable of the chart `{}`", chart.name.text);
+            let own = chart.vars().flat_map(|v| &v.names);
+            let parameters = chart.params.iter().map(|p| &p.name).filter(|_| self.file.contains(&*name));
+            if let Some(own) = own.chain(parameters).find(|n| n.text == name) {
+                let what = say!("`{name}` also has a meaning in the chart `{}`", chart.name.text);
                 let problem = Problem::new(&codes::DEFINED_TWICE, at, what);
                 let help =
                     say!("the value of a parameter is one of the file; give one of the two another name");
@@ -335,7 +382,13 @@ impl<'d> Maker<'d> {
             return self.defined_twice(&own, at, first);
         }
         self.named.insert(own.text.clone(), own.at.0);
-        self.made.push((&chart.name.text, own.text.clone()));
+        let layouts = self.layouts.get(&*chart.name.text).into_iter().flatten();
+        let layouts = layouts.map(|l| {
+            let chart = Name::new(own.text.clone(), l.chart.at.0);
+            Item::Layout(Layout { chart, ..(*l).clone() })
+        });
+        // The places of the one drawing are those of each instance.
+        self.items.extend(layouts);
         let constants = chart.params.iter().zip(values).map(|(p, v)| constant(p, v.clone()));
         let mut items: Vec<ChartItem> = constants.map(ChartItem::Var).collect();
         items.extend(chart.items.iter().cloned());
@@ -363,24 +416,12 @@ impl<'d> Maker<'d> {
         self.items.push(Item::Chart(made));
     }
 
-    /// The places of a drawing are those of each instance.
-    fn layouts(&mut self, document: &Document) {
-        for item in &document.items {
-            let Item::Layout(l) = item else { continue };
-            for (_, own) in self.made.iter().filter(|(chart, _)| **chart == *l.chart.text) {
-                let chart = Name::new(own.clone(), l.chart.at.0);
-                self.items.push(Item::Layout(Layout { chart, ..l.clone() }));
-            }
-        }
-    }
-
     fn unused(&mut self, document: &Document) {
         if document.items.iter().any(|i| matches!(i, Item::Instance(i) if i.chart.text.is_empty())) {
             return;
         }
         for chart in document.charts().filter(|c| !c.params.is_empty()) {
-            let named = |i: &Item| matches!(i, Item::Instance(i) if i.chart.text == chart.name.text);
-            if document.items.iter().any(named) {
+            if self.used.contains(&*chart.name.text) {
                 continue;
             }
             let name = &chart.name.text;

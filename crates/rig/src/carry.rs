@@ -15,6 +15,7 @@ use g7_compile::ir::VarClass;
 use g7_compile::symbols::{Symbols, Variable};
 use g7_engine::{Addr, Common, GroupId, NONE, State, StepId};
 use g7_host::Runner;
+use g7_model::instances::instantiated;
 use g7_model::{Chart, ChartKind, Document, Said, say};
 
 use crate::{Bench, Role, fault};
@@ -41,7 +42,8 @@ pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -
     let mut lost = Vec::new();
     let mut own = run.state().clone();
     run.own_outputs().for_each(|(addr, value)| own.set_word(run.program(), addr, value));
-    let state = charts(new, old, &own, &mut lost)?;
+    let (now, then) = (instantiated(new.1).0, instantiated(old.1).0);
+    let state = charts((bench, &now), (before, &then), &own, &mut lost)?;
     let mut runner = bench.runner(0).from_state(state, run.due());
     plant(bench, before, run, &mut runner, &mut lost)?;
     for item in &before.items {

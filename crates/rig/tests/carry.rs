@@ -107,6 +107,22 @@ fn a_chart_more_begins_and_a_pulse_does_not_run_again() {
 }
 
 /// The values of a BOOL in the following scans.
+#[test]
+fn instances_go_on_and_one_more_begins() {
+    let before = "input a : ARRAY[1..3] OF BOOL\nchart Axis(i : INT) {\n var n : INT\n initial step 1\n step 2 { P1 n := n + i }\n 1 -> 2 when a[i]\n 2 -> 1 when not a[i]\n}\ninstance Axis[1..2]\n";
+    let after = before.replace("[1..2]\n", "[1..3]\n");
+    let (bench, carried) = changed(before, &after, &[("a[2]", 1)], 3);
+    assert_eq!(texts(&carried.lost), [""; 0]);
+    assert_eq!(situation(&bench, &carried.runner), "Axis[1].1,Axis[2].2,Axis[3].1");
+    assert_eq!(word(&bench, &carried.runner, "Axis[2].n"), 2);
+    let (bench, carried) = changed(&after, before, &[("a[3]", 1)], 3);
+    assert_eq!(situation(&bench, &carried.runner), "Axis[1].1,Axis[2].1");
+    assert_eq!(
+        texts(&carried.lost),
+        ["step `Axis[3].2` is active and no longer exists", "`Axis[3].n`, which is 3, no longer exists"]
+    );
+}
+
 fn seen(bench: &Bench, runner: &mut Runner, name: &str, scans: u32) -> Vec<u64> {
     (0..scans)
         .map(|_| {

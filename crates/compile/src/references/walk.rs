@@ -85,6 +85,14 @@ impl<'d> Walk<'_, 'd> {
         }
     }
 
+    /// `Axis.X12` for `Axis[3].X12`, if there is such a chart: a variable in back-ticks can have a name of this form.
+    fn of_instance(&self, names: &[Name]) -> Option<Vec<Name>> {
+        let [first, members @ ..] = names else { return None };
+        let (chart, _) = instance_of(&first.text).filter(|_| !members.is_empty())?;
+        self.tracer.chart(chart)?;
+        Some(std::iter::once(Name::new(chart, first.at.0)).chain(members.iter().cloned()).collect())
+    }
+
     /// The parameter in the name of an instance, `Axis[i + 1]`: it stands right behind the bracket.
     fn index(&mut self, name: &Name) {
         let Some((_, Index::Parameter(parameter, _))) = instance_of(&name.text) else { return };
@@ -265,12 +273,10 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         if let Some((at, def)) = of_plant {
             return self.add(at, def, Written::Path { first: true, only });
         }
-        let numbered = names.first().and_then(|n| instance_of(&n.text)).filter(|_| !only);
-        let named = numbered.map(|(chart, _)| {
-            let first = names.first().map(|n| Name::new(chart, n.at.0));
-            first.into_iter().chain(names.iter().skip(1).cloned()).collect::<Vec<_>>()
-        });
-        names.first().filter(|_| !only).into_iter().for_each(|n| self.index(n));
+        let named = self.of_instance(names);
+        if named.is_some() {
+            names.first().into_iter().for_each(|n| self.index(n));
+        }
         let followed = self.tracer.path(named.as_deref().unwrap_or(names), &self.locals);
         if !followed.whole {
             let known = |k: usize| followed.names.iter().any(|(of, ..)| *of == k);

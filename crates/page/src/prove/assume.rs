@@ -131,7 +131,7 @@ impl Refuted<'_> {
         } else {
             format!("{name}.X")
         };
-        let many = self.file.source.document.charts().count() > 1;
+        let many = self.model.compiled.unit.charts.len() > 1;
         Some(if many { format!("{chart}.{name}") } else { name })
     }
 }

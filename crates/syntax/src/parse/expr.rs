@@ -468,7 +468,7 @@ impl Parser<'_> {
     }
 
     /// True if the next token is the `(` of a call.
-    fn peek_call(&mut self) -> bool {
+    pub(super) fn peek_call(&mut self) -> bool {
         let next = self.peek();
         next.kind == Tok::LParen && !next.newline
     }

@@ -220,6 +220,8 @@ impl Parser<'_> {
             "after" => self.response(),
             "between" => self.between(),
             "at" if self.peek_word("most") => self.at_most(),
+            // `and(a, b)` is the function of the operator.
+            _ if BinaryOp::of_word(word).is_some() && self.peek_call() => self.leads_to(),
             _ if self.at_expr() && !self.is_before_condition() => self.leads_to(),
             _ => {
                 let forms = ["always", "never", "reachable", "after", "between", "at most"];

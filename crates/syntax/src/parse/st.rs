@@ -334,12 +334,21 @@ impl Parser<'_> {
             return true;
         }
         let mut ahead = self.lexer.ahead(self.cur);
-        loop {
-            match ahead.token().kind {
-                Tok::PathDot => ahead.token(),
-                kind => return matches!(kind, Tok::Comma | Tok::Colon | Tok::DotDot),
-            };
+        let mut token = ahead.token();
+        // The index of an instance has at most three tokens, and the name of a member stands behind it.
+        if token.kind == Tok::LBracket {
+            let mut inner = (0..4).map(|_| ahead.token().kind);
+            if !inner.any(|kind| kind == Tok::RBracket) || ahead.token().kind != Tok::Dot {
+                return false;
+            }
+            ahead.token();
+            token = ahead.token();
         }
+        while token.kind == Tok::PathDot {
+            ahead.token();
+            token = ahead.token();
+        }
+        matches!(token.kind, Tok::Comma | Tok::Colon | Tok::DotDot)
     }
 
     fn for_statement(&mut self) -> StmtKind {

@@ -23,30 +23,46 @@ proptest! {
     }
 }
 
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
-
-    #[test]
-    fn a_document_reads_as_it_was(d in document()) {
-        let text = print(&d, None);
-        let (again, problems) = parse(&text, FileId(0));
-        prop_assert!(problems.is_empty(), "{problems:?}\n{text}");
-        prop_assert_eq!(&again, &d, "\n{}", text);
-        prop_assert_eq!(print(&again, None), text.clone());
+/// Runs a property of documents with room for their strategies, whose values are large in a build for tests.
+fn with_room(property: impl FnOnce() + Send + 'static) {
+    let thread = std::thread::Builder::new().stack_size(64 << 20).spawn(property).expect("a thread");
+    if let Err(failure) = thread.join() {
+        std::panic::resume_unwind(failure);
     }
+}
 
-    /// Formatting a text keeps its meaning and its notes, and doing it twice changes nothing more.
-    #[test]
-    fn formatting_a_text_twice_changes_nothing(d in document(), notes in prop::collection::vec(0usize..4, 0..24)) {
-        let text = with_notes(&print(&d, None), &notes);
-        let (first, problems) = parse(&text, FileId(0));
-        prop_assert!(problems.is_empty(), "{problems:?}\n{text}");
-        let formatted = print(&first, Some(&text));
-        let (second, problems) = parse(&formatted, FileId(0));
-        prop_assert!(problems.is_empty(), "{problems:?}\n{formatted}");
-        prop_assert_eq!(&second, &first, "\n{}\n-- from --\n{}", formatted, text);
-        prop_assert_eq!(print(&second, Some(&formatted)), formatted);
-    }
+fn config() -> ProptestConfig {
+    ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() }
+}
+
+#[test]
+fn a_document_reads_as_it_was() {
+    with_room(|| {
+        proptest!(config(), |(d in document())| {
+            let text = print(&d, None);
+            let (again, problems) = parse(&text, FileId(0));
+            prop_assert!(problems.is_empty(), "{problems:?}\n{text}");
+            prop_assert_eq!(&again, &d, "\n{}", text);
+            prop_assert_eq!(print(&again, None), text.clone());
+        });
+    });
+}
+
+/// Formatting a text keeps its meaning and its notes, and doing it twice changes nothing more.
+#[test]
+fn formatting_a_text_twice_changes_nothing() {
+    with_room(|| {
+        proptest!(config(), |(d in document(), notes in prop::collection::vec(0usize..4, 0..24))| {
+            let text = with_notes(&print(&d, None), &notes);
+            let (first, problems) = parse(&text, FileId(0));
+            prop_assert!(problems.is_empty(), "{problems:?}\n{text}");
+            let formatted = print(&first, Some(&text));
+            let (second, problems) = parse(&formatted, FileId(0));
+            prop_assert!(problems.is_empty(), "{problems:?}\n{formatted}");
+            prop_assert_eq!(&second, &first, "\n{}\n-- from --\n{}", formatted, text);
+            prop_assert_eq!(print(&second, Some(&formatted)), formatted);
+        });
+    });
 }
 
 /// Notes of several sorts between the lines and at their ends.
