@@ -260,12 +260,14 @@ fn printed_rust_is_clean_by_clippy() {
     subjects.extend(random(ProfileName::Iec61131, 500, 300));
     let texts: Vec<String> = subjects
         .iter()
-        .enumerate()
-        .filter_map(|(i, s)| {
-            let style = if i % 9 == 6 && s.room == Room::default() { Style::Flat } else { Style::Structured };
+        .filter_map(|s| {
+            // By its name, so that a new case does not put others in the place of those that were tried.
+            let lot = s.title.bytes().fold(0_u32, |h, b| h.wrapping_mul(31).wrapping_add(u32::from(b)));
+            let flat = lot % 9 == 6 && s.room == Room::default();
+            let style = if flat { Style::Flat } else { Style::Structured };
             let printed = s.print(Language::Rust, style, "c").ok().filter(|p| p.problems.is_empty())?;
             // Few charts read a number from a text, so none of them is left out.
-            let file = printed.files.last().filter(|f| i % 3 == 0 || f.text.contains("text_to_"))?;
+            let file = printed.files.last().filter(|f| lot % 4 != 3 || f.text.contains("text_to_"))?;
             Some(file.text.clone())
         })
         .collect();

@@ -168,11 +168,19 @@ impl Lower<'_> {
             // Bit i of the word: (w div 2^i) mod 2, of w made positive.
             let long = |v| Expr::long(v, NOWHERE);
             let word = Expr::new(ExprKind::Word(Type::Int, word), NOWHERE);
-            let marked = Expr::new(ExprKind::Convert(Type::Int, Type::Lint, Box::new(word)), NOWHERE)
-                .arith(Arith::Add, Type::Lint, long(1 << BITS), NOWHERE)
-                .arith(Arith::Div, Type::Lint, long(1 << (number % BITS)), NOWHERE)
-                .arith(Arith::Mod, Type::Lint, long(2), NOWHERE)
-                .compare(Cmp::Eq, Type::Lint, long(1), NOWHERE);
+            let positive = Expr::new(ExprKind::Convert(Type::Int, Type::Lint, Box::new(word)), NOWHERE)
+                .arith(Arith::Add, Type::Lint, long(1 << BITS), NOWHERE);
+            // Nothing is divided by 1: linters of printed code report that.
+            let shifted = match number % BITS {
+                0 => positive,
+                bit => positive.arith(Arith::Div, Type::Lint, long(1 << bit), NOWHERE),
+            };
+            let marked = shifted.arith(Arith::Mod, Type::Lint, long(2), NOWHERE).compare(
+                Cmp::Eq,
+                Type::Lint,
+                long(1),
+                NOWHERE,
+            );
             then.push(when(marked, self.empty(chart, NOWHERE)));
         }
         then.push(set(asked, false));
