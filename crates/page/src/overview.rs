@@ -67,11 +67,11 @@ struct ChartRow {
     transitions: usize,
     /// The names of its parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "types", ts(as = "Option<Vec<String>>"))]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     params: Vec<String>,
     /// Its instances that have a name of their own.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    #[cfg_attr(feature = "types", ts(as = "Option<Vec<String>>"))]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     instances: Vec<String>,
     /// The chart and the step that this chart is the expansion of, or that enclose it.
     #[serde(skip_serializing_if = "Option::is_none")]
