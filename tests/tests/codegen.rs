@@ -261,7 +261,7 @@ fn printed_rust_is_clean_by_clippy() {
     let texts: Vec<String> = subjects
         .iter()
         .filter_map(|s| {
-            // By its name, so that a new case does not put others in the place of those that were tried.
+            // The title alone chooses: a new case does not change which of the others are tried.
             let lot = s.title.bytes().fold(0_u32, |h, b| h.wrapping_mul(31).wrapping_add(u32::from(b)));
             let flat = lot % 9 == 6 && s.room == Room::default();
             let style = if flat { Style::Flat } else { Style::Structured };

@@ -76,7 +76,7 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
     }
 }
 
-/// An instance with a name of its own; those of a range stand below the one chart.
+/// An instance with a name of its own. Those of a range have no entry: their chart has one.
 fn instance(i: &Instance) -> Vec<Entry> {
     let InstanceNames::One(name) = &i.names else { return Vec::new() };
     vec![entry(name, Kind::Chart, say!("instance of `{}`", i.chart.text), i.at.0)]

@@ -257,7 +257,7 @@ pub struct Chart {
     pub kind: ChartKind,
     /// Its name.
     pub name: Name,
-    /// Its parameters. A chart that has some runs only as its instances, see [`Instance`].
+    /// Its parameters. A chart with parameters runs only as its instances, see [`Instance`].
     pub params: Vec<Param>,
     /// `"…"`.
     pub comment: Option<Box<str>>,

@@ -10,16 +10,18 @@
 //! # What must hold
 //!
 //! - A document without parameters and instances is not copied.
-//! - In the result no chart has parameters, and no name is that of an instance by a parameter (`Axis[i + 1]`).
+//! - In the result no chart has parameters. In an instance, `Axis[i + 1]` has become `Axis[4]`; where `i` is no
+//!   parameter with a whole number, the name stays as it is and is later told as an unknown one.
 //! - All places are those of the one text. The work is bounded by [`MOST`].
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
+use crate::visit::Visitor as Reader;
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
     Arg, Chart, ChartItem, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item, Layout, Literal,
-    Name, Param, Path, Problem, Span, VarDecl, VarKind, codes, instance_of, say,
+    Name, Order, Param, Path, Problem, Span, VarDecl, VarKind, chart_in, codes, instance_of, say,
 };
 
 /// The greatest length of the text of all instances together, in MiB.
@@ -41,7 +43,11 @@ pub fn instantiated(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
             Item::Instance(i) => made.instances(i),
             Item::Chart(c) if !c.params.is_empty() => {}
             Item::Layout(l) if made.charts.contains_key(&*l.chart.text) => {}
-            item => made.items.push(item.clone()),
+            item => {
+                let mut item = item.clone();
+                visit_mut::item(&mut item, &mut Numbered { numbers: HashMap::new(), charts: &made.charts });
+                made.items.push(item);
+            }
         }
     }
     made.unused(document);
@@ -81,18 +87,10 @@ pub fn uninstantiated(document: &Document) -> Cow<'_, Document> {
 
 /// The chart that is drawn for a name: `Axis` for `Axis[3]`, and for `Lift` of `instance Lift : Axis(7)`.
 pub fn drawn_for<'n>(document: &'n Document, name: &'n str) -> &'n str {
-    if let Some((chart, _)) = instance_of(name) {
-        return chart;
-    }
-    own_instances(document).find(|(own, _)| *own == name).map_or(name, |(_, chart)| chart)
+    own_instances(document).find(|(own, _)| *own == name).map_or_else(|| chart_in(name), |(_, chart)| chart)
 }
 
-/// The instances of a chart that have a name of their own: `Lift` of `instance Lift : Axis(7)`.
-pub fn own_names<'d>(document: &'d Document, chart: &'d str) -> impl Iterator<Item = &'d str> {
-    own_instances(document).filter(move |(_, of)| *of == chart).map(|(own, _)| own)
-}
-
-/// The instances that have a name of their own, each with its chart.
+/// The instances that have a name of their own, each with its chart: `Lift` and `Axis` for `instance Lift : Axis(7)`.
 pub fn own_instances(document: &Document) -> impl Iterator<Item = (&str, &str)> {
     document.items.iter().filter_map(|i| match i {
         Item::Instance(Instance { chart, names: InstanceNames::One(own), .. }) => {
@@ -357,15 +355,16 @@ impl<'d> Maker<'d> {
     /// named in it, unless the file has that name as well.
     fn captured(&mut self, chart: &Chart, value: &Expr) {
         let mut names = Names(Vec::new());
-        visit_mut::expr(&mut value.clone(), &mut names);
-        for (name, at) in names.0 {
+        names.expr(value);
+        for name in names.0 {
             let own = chart.vars().flat_map(|v| &v.names);
-            let parameters = chart.params.iter().map(|p| &p.name).filter(|_| self.file.contains(&*name));
-            if let Some(own) = own.chain(parameters).find(|n| n.text == name) {
-                let what = say!("`{name}` also has a meaning in the chart `{}`", chart.name.text);
-                let problem = Problem::new(&codes::DEFINED_TWICE, at, what);
-                let help =
-                    say!("the value of a parameter is one of the file; give one of the two another name");
+            let parameters = chart.params.iter().map(|p| &p.name).filter(|_| self.file.contains(&*name.text));
+            if let Some(own) = own.chain(parameters).find(|n| n.text == name.text) {
+                let what = say!("`{}` also has a meaning in the chart `{}`", name.text, chart.name.text);
+                let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
+                let help = say!(
+                    "a name in the value of a parameter is one of the file; give one of the two another name"
+                );
                 self.problems.push(problem.related(own.at.0, say!("declared here")).help(help));
             }
         }
@@ -378,7 +377,10 @@ impl<'d> Maker<'d> {
         let first = self.named.get(&own.text).or_else(|| self.plain.get(&*own.text)).copied();
         let first = first.or_else(|| self.charts.get(&*own.text).map(|c| c.name.at.0));
         if let Some(first) = first {
-            let at = if own.at.0 == i.chart.at.0 { i.at.0 } else { own.at.0 };
+            let at = match i.names {
+                InstanceNames::One(_) => own.at.0,
+                InstanceNames::Range(..) => i.at.0,
+            };
             return self.defined_twice(&own, at, first);
         }
         self.named.insert(own.text.clone(), own.at.0);
@@ -451,31 +453,27 @@ fn constant(param: &Param, value: Option<Expr>) -> VarDecl {
 }
 
 /// The first names of all paths of an expression.
-struct Names(Vec<(Box<str>, Span)>);
+struct Names<'d>(Vec<&'d Name>);
 
-impl Visitor for Names {
-    fn path(&mut self, path: &mut Path, _: Use, at: Span) {
-        self.0.extend(path.names.first().map(|n| (n.text.clone(), at)));
+impl<'d> Reader<'d> for Names<'d> {
+    fn path(&mut self, names: &'d [Name]) {
+        self.0.extend(names.first());
     }
+
+    fn direct(&mut self, _: &'d str, _: Span) {}
+
+    fn order(&mut self, _: &'d Order) {}
 }
 
-/// Puts the number of a parameter into the names of instances: `Axis[i + 1]` becomes `Axis[4]`.
+/// Puts the number of a parameter into the names of instances: `Axis[i + 1]` becomes `Axis[4]`. Outside of
+/// instances there are no parameters.
 struct Numbered<'n, 'd> {
     numbers: HashMap<&'d str, i64>,
     charts: &'n HashMap<&'d str, &'d Chart>,
 }
 
-impl Numbered<'_, '_> {
-    fn number(&self, index: Index<'_>) -> Option<i64> {
-        match index {
-            Index::Number(n) => Some(n),
-            Index::Parameter(parameter, added) => self.numbers.get(parameter)?.checked_add(added),
-        }
-    }
-}
-
 impl Visitor for Numbered<'_, '_> {
-    /// An instance as an argument, `INITCHART(Axis[i])`, is read as an element of an array.
+    /// The parser reads an instance as an argument, `INITCHART(Axis[3])`, as an element of an array.
     fn expr(&mut self, e: &mut Expr) {
         let ExprKind::Element(path, index, None) = &e.kind else { return };
         let ([name], [index]) = (path.names.as_slice(), index.as_slice()) else { return };
@@ -499,8 +497,8 @@ impl Visitor for Numbered<'_, '_> {
     }
 
     fn chart_name(&mut self, name: &mut Name) {
-        if let Some((chart, index @ Index::Parameter(..))) = instance_of(&name.text)
-            && let Some(number) = self.number(index)
+        if let Some((chart, Index::Parameter(parameter, added))) = instance_of(&name.text)
+            && let Some(number) = self.numbers.get(parameter).and_then(|n| n.checked_add(added))
         {
             name.text = format!("{chart}[{number}]").into();
         }

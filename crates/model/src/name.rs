@@ -55,6 +55,11 @@ pub fn instance_of(name: &str) -> Option<(&str, Index<'_>)> {
     (!chart.is_empty()).then_some((chart, index))
 }
 
+/// The chart in a name: `Axis` of `Axis[3]`, otherwise the whole name.
+pub fn chart_in(name: &str) -> &str {
+    instance_of(name).map_or(name, |(chart, _)| chart)
+}
+
 /// A parameter of a function or chart, or an attribute of a part.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Param {

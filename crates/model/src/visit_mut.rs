@@ -25,7 +25,7 @@ pub trait Visitor {
     fn expr(&mut self, _expr: &mut Expr) {}
     /// A name, and how it is used.
     fn path(&mut self, _path: &mut Path, _how: Use, _at: Span) {}
-    /// The name of another chart: in an order, or of the expansion of a macro-step.
+    /// The name of a chart in an order, or the name of the expansion of a macro-step.
     fn chart_name(&mut self, _name: &mut Name) {}
     /// True if the statements of bodies in other languages than Structured Text are visited as well.
     fn all_bodies(&self) -> bool {
@@ -35,14 +35,17 @@ pub trait Visitor {
 
 /// Visits all of a document.
 pub fn document(document: &mut Document, v: &mut impl Visitor) {
-    for item in &mut document.items {
-        match item {
-            Item::Chart(c) => chart(c, v),
-            Item::Action(a) => body(&mut a.body, v),
-            Item::Section(s) => stmts(&mut s.body.statements, v),
-            Item::Pre(b, _) | Item::Post(b, _) => body(b, v),
-            _ => {}
-        }
+    document.items.iter_mut().for_each(|i| item(i, v));
+}
+
+/// Visits an item of a document.
+pub fn item(item: &mut Item, v: &mut impl Visitor) {
+    match item {
+        Item::Chart(c) => chart(c, v),
+        Item::Action(a) => body(&mut a.body, v),
+        Item::Section(s) => stmts(&mut s.body.statements, v),
+        Item::Pre(b, _) | Item::Post(b, _) => body(b, v),
+        _ => {}
     }
 }
 

@@ -1,9 +1,12 @@
 //! The overview of a file that the frame of the page shows: charts, problems, plants, tests.
 
+use std::collections::HashMap;
+
 use g7_compile::resolve::{of_profile, with_switch};
 use g7_edit::ChartSort;
 use g7_ide::File;
-use g7_model::instances::{drawn_for, own_names};
+use g7_model::chart_in;
+use g7_model::instances::own_instances;
 use g7_model::{Document, Nanos, ProfileName, Switch};
 use serde::Serialize;
 
@@ -145,6 +148,11 @@ const SCAN: Nanos = Nanos::from_millis(10);
 fn charts(file: &File) -> Vec<ChartRow> {
     let readable = file.drawn();
     let document = readable.document;
+    let owners = owners(document);
+    let mut instances: HashMap<&str, Vec<String>> = HashMap::new();
+    for (name, chart) in own_instances(document) {
+        instances.entry(chart).or_default().push(name.to_owned());
+    }
     let row = |c: &g7_model::Chart| {
         let (from, to) = if readable.stale { (0, 0) } else { file.units(c.at.0) };
         ChartRow {
@@ -155,19 +163,27 @@ fn charts(file: &File) -> Vec<ChartRow> {
             to,
             steps: c.steps().count(),
             transitions: c.transitions().count(),
-            instances: own_names(document, &c.name.text).map(str::to_owned).collect(),
             params: c.params.iter().map(|p| p.name.text.to_string()).collect(),
-            of: owner(document, &c.name.text),
+            instances: instances.get(&*c.name.text).cloned().unwrap_or_default(),
+            of: owners.get(&*c.name.text).map(|of| of.map(str::to_owned)),
         }
     };
     document.charts().map(row).collect()
 }
 
-/// The macro-step that a chart is the expansion of, or the step that encloses it.
-fn owner(document: &Document, name: &str) -> Option<[String; 2]> {
-    let mut steps = document.charts().flat_map(|c| c.steps().map(move |s| (c, s)));
-    let (chart, step) = steps.find(|(_, s)| opens(s).any(|opened| drawn_for(document, opened) == name))?;
-    Some([chart.name.text.to_string(), step.name.text.to_string()])
+/// The macro-step that a chart is the expansion of, or the step that encloses it: the first one, with its chart.
+fn owners(document: &Document) -> HashMap<&str, [&str; 2]> {
+    let own: HashMap<&str, &str> = own_instances(document).collect();
+    let mut owners = HashMap::new();
+    for chart in document.charts() {
+        for step in chart.steps() {
+            for opened in opens(step) {
+                let drawn = own.get(opened).copied().unwrap_or_else(|| chart_in(opened));
+                owners.entry(drawn).or_insert([&*chart.name.text, &*step.name.text]);
+            }
+        }
+    }
+    owners
 }
 
 /// A fingerprint of a text, in hexadecimal.

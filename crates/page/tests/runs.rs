@@ -230,6 +230,22 @@ fn breakpoints_stop_at_activation_and_at_clearing() {
 }
 
 #[test]
+fn the_instances_of_a_chart_have_one_symbol_and_a_breakpoint_holds_for_all() {
+    let text = "input a : ARRAY[1..2] OF BOOL\nchart Axis(i : INT) {\n initial step 1\n step 2\n 1 -> 2 when a[i]\n 2 -> 1 when not a[i]\n}\ninstance Axis[1..2]\n";
+    let (mut page, run) = started(text);
+    let steps = run["steps"].as_array().expect("steps").iter();
+    let told: Vec<_> = steps.map(|s| (s["id"].as_str().unwrap(), s["instance"].as_str().unwrap())).collect();
+    let (one, two) = ("Axis/s/1", "Axis/s/2");
+    assert_eq!(told, [(one, "Axis[1]"), (two, "Axis[1]"), (one, "Axis[2]"), (two, "Axis[2]")]);
+    let ids = page.ok(json!({ "do": "run_breaks", "run": "r", "ids": [two, "Axis/t/1"] }));
+    assert_eq!(ids["ids"], json!([two, "Axis/t/1"]));
+    let second = run["signals"].as_array().expect("signals").iter().position(|s| s["name"] == "a[2]");
+    page.ok(json!({ "do": "run_toggle", "run": "r", "signal": second }));
+    let stopped = advance(&mut page, 1_000);
+    assert_eq!((&stopped["stopped"]["id"], &stopped["on"]), (&json!(two), &json!([3])));
+}
+
+#[test]
 fn passes_show_the_transient_situations() {
     let (mut page, _) = started(CHART);
     page.ok(json!({ "do": "run_toggle", "run": "r", "signal": A }));

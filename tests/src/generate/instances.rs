@@ -3,8 +3,8 @@
 use super::rng::Rng;
 use super::sight::Sight;
 
-/// Adds a chart with parameters and its instances, seen from `outside` of all charts. It draws from a copy of the
-/// generator, so that a document without instances is the same as before there were some.
+/// Adds a chart with parameters and its instances. `outside` has the names that are seen outside of all charts. The
+/// random numbers come from a copy of the generator: the rest of the document does not depend on them.
 pub(super) fn instances(rng: &Rng, outside: &Sight, out: &mut String) {
     let mut rng = rng.clone();
     rng.bits();

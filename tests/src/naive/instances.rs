@@ -85,6 +85,20 @@ fn whole(doc: &Document, e: &Expr) -> Run<i128> {
     constant.map_or_else(|| bad(format!("no number {name}")), Ok)
 }
 
+/// The name of a chart as an argument: `G`, `Axis[3]` or `Axis[i]`.
+pub(super) fn chart_written(e: &Expr) -> Option<String> {
+    match &e.kind {
+        ExprKind::Path(path) => Some(path.text()),
+        ExprKind::Element(path, index, None) => match index.as_slice() {
+            [Expr { kind: ExprKind::Path(parameter), .. }] => {
+                Some(format!("{}[{}]", path.text(), parameter.text()))
+            }
+            _ => e.kind.variable(),
+        },
+        _ => None,
+    }
+}
+
 /// `Axis[i + 1]` as the instance whose parameters are these sees it: `Axis[4]`.
 pub(super) fn numbered(name: &str, numbers: &BTreeMap<String, i128>) -> String {
     let Some((chart, inner)) = name.strip_suffix(']').and_then(|n| n.split_once('[')) else {

@@ -4,6 +4,7 @@ use g7_model::{Arg, Block, CaseArm, Expr, ExprKind, Path, Stmt, StmtKind, Type, 
 
 use super::bits;
 use super::exec::{Exec, Frame};
+use super::instances::chart_written;
 use super::model::ScopeId;
 use super::resolve::Ref;
 use super::state::{Request, Timing};
@@ -226,10 +227,6 @@ impl Exec<'_> {
         if let Some(instance) = self.instance(scope, path) {
             return self.call_block(scope, instance, args);
         }
-        let arg_path = |i: usize| match args.get(i).map(|a| &a.value.kind) {
-            Some(ExprKind::Path(p)) => Some(p),
-            _ => None,
-        };
         match &*path.text().to_ascii_uppercase() {
             "RESET_XIT" => {
                 let restart = Timing { since: self.s.now, since_scan: self.s.scan, kept: 0, kept_scans: 0 };
@@ -238,8 +235,7 @@ impl Exec<'_> {
                 Ok(())
             }
             service @ ("INITCHART" | "CLEARCHART" | "FREEZECHART") => {
-                let instance = args.first().and_then(|a| a.value.kind.variable());
-                let named = arg_path(0).map(|p| p.text()).or(instance);
+                let named = args.first().and_then(|a| chart_written(&a.value));
                 let chart = named.and_then(|name| self.m.chart_named(scope, &name));
                 let Some(chart) = chart else { return bad(format!("{service} of no chart")) };
                 let request = match service {

@@ -35,6 +35,14 @@ export function isShown(part: Part | undefined, chosen: Chosen): part is Part {
   return part !== undefined && (!part.instance || part.instance === chosen(chartOf(part.id)));
 }
 
+/** The ids of those parts of a run that a drawing shows, each with what is told of the part. */
+export function* shownOf<T>(parts: readonly Part[], told: Iterable<readonly [number, T]>, chosen: Chosen): Generator<[string, T]> {
+  for (const [number, what] of told) {
+    const part = parts[number];
+    if (isShown(part, chosen) && part.id) yield [part.id, what];
+  }
+}
+
 class Choices {
   /** The chosen instances, by file and chart. */
   #chosen: ReadonlyMap<string, string> = $state.raw(new Map());

@@ -2,7 +2,7 @@
 import { live } from '../lib/live.svelte';
 import type { Item } from '../lib/protocol';
 import { transitionNumber } from '../lib/ids';
-import { choices, isShown, type Chosen } from '../lib/instances.svelte';
+import { choices, isShown, shownOf, type Chosen } from '../lib/instances.svelte';
 import type { Run } from './state.svelte';
 
 const GAP = 40;
@@ -20,18 +20,29 @@ const MANY = 40;
 /** The signals that a symbol names, by the id of the symbol. */
 export type Named = ReadonlyMap<string, readonly number[]>;
 
-/** Finds the names of signals in the texts of symbols; `chart` is the name in the program, of an instance its
- * own, and `parameter` the first parameter of the chart. */
+/** A word of a text, in back-ticks or not, and the index behind it. */
+const WORD = /`([^`]+)`|([\p{L}_][\p{L}\p{N}_.]*)(\[[^\]]*\])?/gu;
+
+/** The words of a text: an element of an array with its index, and the words within the index. */
+function* wordsOf(text: string): Generator<string> {
+  for (const [, ticked, word = '', index] of text.matchAll(WORD)) {
+    yield ticked ?? word + (index ?? '');
+    if (index) yield* wordsOf(index.slice(1));
+  }
+}
+
+/** Finds the names of signals in the texts of symbols. `chart` is the name of the chart in the program: that of an
+ * instance is `Axis[3]`; `parameter` is the first parameter of the chart. */
 export function named(signals: readonly { name: string }[], chart: string, items: readonly Item[], parameter?: string): Named {
   const byName = new Map(signals.map((s, i) => [s.name, i]));
   const found = new Map<string, number[]>();
-  // An element of an array is named by its index, or by the parameter that is the number of the instance.
+  // The index of an element can be the parameter that has the number of the instance.
   const number = parameter ? /\[(-?\d+)\]$/.exec(chart)?.[1] : undefined;
   for (const item of items) {
     if (!item.source) continue;
     const signals = new Set<number>();
-    for (const word of item.source.matchAll(/`([^`]+)`|[\p{L}_][\p{L}\p{N}_.]*(?:\[[^\]]*\])?/gu)) {
-      const name = word[1] ?? (number === undefined ? word[0] : word[0].replace(`[${parameter}]`, `[${number}]`));
+    for (const word of wordsOf(item.source)) {
+      const name = number === undefined ? word : word.replace(`[${parameter}]`, `[${number}]`);
       const signal = byName.get(`${chart}.${name}`) ?? byName.get(name);
       if (signal !== undefined) signals.add(signal);
     }
@@ -129,11 +140,7 @@ export class Marks {
       const ms = run.times.get(i);
       if (ms !== undefined) times.set(id, age(ms, grain));
     }
-    const enabled = new Map<string, 0 | 1 | 2>();
-    for (const [i, how] of run.enabled) {
-      const transition = transitions[i];
-      if (isShown(transition, this.#chosen)) enabled.set(transition.id, how);
-    }
+    const enabled = new Map(shownOf(transitions, run.enabled, this.#chosen));
     live.on = on;
     live.times = times;
     live.enabled = enabled;

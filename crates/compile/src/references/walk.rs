@@ -6,7 +6,7 @@ use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
     Block, Chart, ChartItem, Document, Index, Instance, InstanceNames, Item, Name, Order, Placed, Plant,
-    PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl, instance_of,
+    PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl, chart_in, instance_of,
 };
 
 use super::named::{Definition, Unknown, Use, Written};
@@ -57,11 +57,6 @@ fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
             *home = (*chart).to_owned();
         }
     }
-}
-
-/// The chart that is named: `Axis` of `Axis[3]`.
-fn chart_of(name: &str) -> &str {
-    instance_of(name).map_or(name, |(chart, _)| chart)
 }
 
 struct Walk<'u, 'd> {
@@ -221,7 +216,7 @@ impl<'d> Walk<'_, 'd> {
         self.add(step.name.at.0, def, Written::Declared);
         if let StepKind::Macro(expansion) = &step.kind {
             self.index(expansion);
-            let chart = self.tracer.chart(chart_of(&expansion.text));
+            let chart = self.tracer.chart(chart_in(&expansion.text));
             self.name(expansion, chart, Written::Name);
         }
         step.actions.iter().for_each(|a| self.action(a));
@@ -305,14 +300,14 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
         let name = match order {
             Order::Force(name, situation) => {
                 if let Situation::Steps(steps) = situation {
-                    steps.iter().for_each(|step| self.step_name(chart_of(&name.text), step, Written::Step));
+                    steps.iter().for_each(|step| self.step_name(chart_in(&name.text), step, Written::Step));
                 }
                 name
             }
             Order::Enable(name) | Order::Mask(name) | Order::Call(name) | Order::Enclose(name) => name,
         };
         self.index(name);
-        let chart = self.tracer.chart(chart_of(&name.text));
+        let chart = self.tracer.chart(chart_in(&name.text));
         let output = matches!(order, Order::Mask(_)) && chart.is_none();
         if output {
             let def = self.tracer.path(std::slice::from_ref(name), &self.locals).names.into_iter().next();

@@ -107,8 +107,8 @@ impl<'d> Resolver<'_, 'd> {
         ids
     }
 
-    /// Reports a variable in back-ticks with the name of an element: tests, traces and io files could not tell them
-    /// apart.
+    /// Reports a variable in back-ticks that has the name of an element of an array. Tests, traces and io files could
+    /// not tell the two apart.
     pub(super) fn name_elements_once(&mut self) {
         if self.scopes.arrays.is_empty() {
             return;

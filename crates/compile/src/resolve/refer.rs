@@ -299,15 +299,15 @@ impl Resolver<'_, '_> {
         if matches!(name, "True" | "False") {
             return problem.meant(&name.to_ascii_uppercase());
         }
-        if let Some(instance) = self.instance_near(name) {
-            problem.help =
-                Some(say!("an instance is named by a number that is written out, as in `{instance}`"));
-        } else if let Some(base) = self.overlined(name, chart) {
+        if let Some(base) = self.overlined(name, chart) {
             problem.help = Some(say!("write `not {base}`, `{base}'` or `/{base}`"));
-        } else if self.may_guess()
-            && let Some(near) = self.guess(name, home.as_deref())
-        {
-            problem = problem.meant(&near);
+        } else if self.may_guess() {
+            if let Some(instance) = self.instance_near(name) {
+                problem.help =
+                    Some(say!("an instance is named by a number that is written out, as in `{instance}`"));
+            } else if let Some(near) = self.guess(name, home.as_deref()) {
+                problem = problem.meant(&near);
+            }
         }
         problem
     }

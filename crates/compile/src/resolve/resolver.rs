@@ -2,7 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Holds, Name, Problem, Span, Type, codes, instance_of, say};
+use g7_model::{Holds, Name, Problem, Span, Type, chart_in, codes, instance_of, say};
 
 use super::scopes::Scopes;
 use crate::ir::{ChartId, FunctionId, SectionId, Unit, Value, Var, VarClass, VarId};
@@ -143,9 +143,12 @@ impl<'u, 'd> Resolver<'u, 'd> {
         }
         let mut problem =
             Problem::new(&codes::UNKNOWN_CHART, name.at.0, say!("there is no chart `{}`", name.text));
+        if !self.may_guess() {
+            return self.report(problem);
+        }
         if let Some(near) = self.instance_near(&name.text) {
             problem = problem.help(say!("did you mean `{near}`?"));
-        } else if self.may_guess() {
+        } else {
             let plain = self.unit.charts.iter().map(|c| &*c.name).filter(|n| instance_of(n).is_none());
             if let Some(near) = nearest(&name.text, plain) {
                 problem = problem.meant(near);
@@ -156,7 +159,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
 
     /// An instance of the chart with parameters that a wrong name has: `Axis[1]` for `Axis` and `Axis[k]`.
     pub(super) fn instance_near(&self, name: &str) -> Option<&str> {
-        let chart = instance_of(name).map_or(name, |(chart, _)| chart);
+        let chart = chart_in(name);
         let of_chart = |n: &&str| instance_of(n).is_some_and(|(c, _)| c == chart);
         self.unit.charts.iter().map(|c| &*c.name).find(of_chart)
     }

@@ -46,7 +46,8 @@ impl Parser<'_> {
         self.numbered(name, &text, tokens)
     }
 
-    /// The first name of a path: an index belongs to it if a member follows, `Axis[3].X12`.
+    /// Reads the index behind the first name of a path, if a member follows it: `Axis[3].X12`. Otherwise the index is
+    /// that of an array, and is left.
     pub(super) fn chart_of_path(&mut self, name: Name) -> Name {
         if !self.at(Tok::LBracket) || self.cur.start != self.prev.end {
             return name;
@@ -59,9 +60,9 @@ impl Parser<'_> {
 
     /// A name with an index whose tokens are ahead. Its place is that of the chart, so that renaming finds it.
     fn numbered(&mut self, name: Name, index: &str, tokens: u32) -> Name {
-        (0..tokens).for_each(|_| {
+        for _ in 0..tokens {
             self.bump();
-        });
+        }
         Name::new(format!("{}[{index}]", name.text), name.at.0)
     }
 
@@ -100,7 +101,8 @@ impl Parser<'_> {
         is_member(close, dot, ahead.token())
     }
 
-    /// Passes the dot between the index that has been read and a name behind it, `m[i].b`.
+    /// Reads the dot between an index and the name of a member, `m[i].b`. Returns false, and reads nothing, if there
+    /// is none.
     pub(super) fn dot_of_member(&mut self) -> bool {
         if self.eat(Tok::PathDot) {
             return true;

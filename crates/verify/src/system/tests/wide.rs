@@ -107,8 +107,8 @@ fn compare(asked: &Asked, text: &str, agreed: &mut Agreed) {
     }
 }
 
-/// Charts are drawn until all three kinds of answers have been compared often enough: how many a chart gives differs
-/// from none to fifty.
+/// Random charts are made until enough answers of all three kinds have been compared. One chart gives between none
+/// and fifty.
 #[test]
 fn both_searches_agree() {
     let (charts, first) = (number("G7_CHARTS", 4), number("G7_SEED", 1));
