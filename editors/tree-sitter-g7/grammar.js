@@ -68,6 +68,8 @@ module.exports = grammar({
         $.variable,
         $.chart,
         $.instance,
+        $.structure,
+        $.function_block,
         $.named_action,
         $.section,
         $.function,
@@ -117,6 +119,32 @@ module.exports = grammar({
           ),
         ),
       ),
+
+    // Types
+
+    structure: ($) =>
+      seq(kw("struct"), field("name", $._name), optional($.comment), "{", items($.structure_member), "}"),
+    structure_member: ($) =>
+      seq(
+        commas(field("name", $._name)),
+        ":",
+        field("type", $.type),
+        optional(seq(":=", field("value", $._expression))),
+        optional($.comment),
+      ),
+    function_block: ($) =>
+      seq(
+        kw("function"),
+        kw("block"),
+        field("name", $._name),
+        optional($.comment),
+        "{",
+        items(choice($.variable, $.inout, $.block_body)),
+        "}",
+      ),
+    inout: ($) =>
+      seq(kw("inout"), commas(field("name", $._name)), ":", field("type", $.type), optional($.comment)),
+    block_body: ($) => seq(kw("body"), $._body),
 
     // Charts
 
@@ -435,9 +463,10 @@ module.exports = grammar({
         $.binary,
       ),
     boolean: () => choice("TRUE", "FALSE", kw("true"), kw("false")),
-    // Brackets hold one expression, or the values of an array.
+    // Brackets hold one expression, or the values of an array or of a structure.
     group: ($) =>
-      choice(seq("(", $._expression, ")"), seq("[", commas(choice($._expression, $.repeated)), "]")),
+      choice(seq("(", choice($._expression, commas($.field)), ")"), seq("[", commas(choice($._expression, $.repeated)), "]")),
+    field: ($) => seq(field("name", $._name), ":=", field("value", $._expression)),
     repeated: ($) => seq($.number, alias($._call_open, "("), $._expression, ")"),
     always_true: () => seq("=", "1"),
     edge: ($) => seq(choice(kw("rise"), kw("fall")), "(", $._expression, ")"),
@@ -453,7 +482,7 @@ module.exports = grammar({
           prec.left(strength, seq($._expression, field("operator", operator), $._expression)),
         ),
       ),
-    call: ($) => prec(12, seq(field("function", $.path), $.arguments)),
+    call: ($) => prec(12, seq(field("function", choice($.path, $.element)), $.arguments)),
     // The bracket stands close behind the name of the array.
     element: ($) =>
       prec(

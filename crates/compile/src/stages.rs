@@ -8,8 +8,9 @@ use std::collections::HashSet;
 use std::sync::Arc;
 
 use g7_engine::{Code, Program};
+use g7_model::composed::{Composition, decomposed};
 use g7_model::instances::instantiated;
-use g7_model::{Document, Expr, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
+use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
 use crate::{allow, check, ir, lower, resolve};
@@ -49,17 +50,33 @@ pub fn compile_with(
     profile: Option<ProfileName>,
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
-    let (instances, undone) = instantiated(doc);
-    if let Cow::Owned(charts) = &instances {
-        let (compiled, problems) = compile_charts(charts, undone, profile, queries);
-        return (compiled, once(doc, problems));
+    let (instances, mut undone) = instantiated(doc);
+    let (plain, mut wrong) = decomposed(&instances);
+    undone.append(&mut wrong);
+    let asked = Composition::of(&instances).map(|mut types| {
+        let mut ask = |query: &Expr| {
+            let (query, mut wrong) = types.query(query);
+            undone.append(&mut wrong);
+            query
+        };
+        queries.iter().map(&mut ask).collect::<Vec<_>>()
+    });
+    let (compiled, problems) =
+        compile_charts(&instances, &plain, undone, profile, asked.as_deref().unwrap_or(queries));
+    match (&instances, &plain) {
+        (Cow::Borrowed(_), Cow::Borrowed(_)) => (compiled, problems),
+        _ => (compiled, once(doc, problems)),
     }
-    compile_charts(doc, undone, profile, queries)
 }
 
-/// A problem of a chart with parameters is told once, not for each instance.
+/// A problem of a chart with parameters is told once, not for each instance; so is one of a function block.
 fn once(doc: &Document, mut problems: Vec<Problem>) -> Vec<Problem> {
-    let charts: Vec<Span> = doc.charts().filter(|c| !c.params.is_empty()).map(|c| c.at.0).collect();
+    let several = |i: &Item| match i {
+        Item::Chart(c) => !c.params.is_empty(),
+        Item::Composed(_) => true,
+        _ => false,
+    };
+    let charts: Vec<Span> = doc.items.iter().filter(|i| several(i)).map(Item::at).collect();
     let mut told = HashSet::new();
     problems.retain(|p| {
         let within = charts.iter().any(|c| c.start <= p.at.start && p.at.end <= c.end);
@@ -68,8 +85,9 @@ fn once(doc: &Document, mut problems: Vec<Problem>) -> Vec<Problem> {
     problems
 }
 
-/// Compiles a document whose charts have no parameters.
+/// Compiles a document whose charts have no parameters, and whose variables are elementary.
 fn compile_charts(
+    written: &Document,
     doc: &Document,
     mut undone: Vec<Problem>,
     profile: Option<ProfileName>,
@@ -86,7 +104,7 @@ fn compile_charts(
     problems.append(&mut properties(doc, &mut unit, &mut scopes));
     let unread = unread(doc);
     let gaps = !unread.is_empty();
-    let judged = clear(check::check(doc, &unit), &problems, unread);
+    let judged = clear(check::check(written, doc, &unit), &problems, unread);
     problems.extend(judged);
     if gaps || problems.iter().any(|p| p.severity() == Severity::Error) {
         // A part with an error may be the one that reads the input or leaves the step.

@@ -15,7 +15,7 @@ use g7_model::visit::Visitor as Reader;
 use g7_model::visit_mut::{self, Visitor};
 use g7_model::{
     ActionKind, Block, ChartItem, Document, Expr, ExprKind, Item, Name, Order, Path, Span, Target, VarDecl,
-    VarKind,
+    VarKind, filled,
 };
 
 /// The name of the variable for each element of an array, by the indexes of the element.
@@ -155,6 +155,7 @@ impl<'d> Single<'d> {
                 all.push(VarDecl {
                     names: vec![Name::new(text.clone(), name.at.0)],
                     array: None,
+                    of: None,
                     init: given.get(place).map(|e| (*e).clone()),
                     ..v.clone()
                 });
@@ -201,11 +202,14 @@ fn retarget(item: &mut Item) {
 
 /// `a_1_m2` for `a[1, -2]`, or a name like it that is not taken.
 fn free(array: &str, indexes: &[i128], taken: &mut HashSet<String>) -> Box<str> {
-    let mut name = array.to_owned();
-    for n in indexes {
-        name.push_str(if *n < 0 { "_m" } else { "_" });
-        name.push_str(&n.unsigned_abs().to_string());
+    let words: Vec<String> =
+        indexes.iter().map(|n| format!("{}{}", if *n < 0 { "_m" } else { "_" }, n.unsigned_abs())).collect();
+    // The indexes of a member stand within its name: `m_1.speed` for `m[].speed`.
+    let (mut name, within) = filled(array, &words);
+    if within > 0 {
+        name = name.replace("[_", "_").replace(",_", "_").replace(']', "");
     }
+    name.extend(words.into_iter().skip(within));
     while !taken.insert(name.to_lowercase()) {
         name.push('_');
     }

@@ -4,6 +4,7 @@
 
 use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
+use g7_model::composed::decomposed;
 use g7_model::instances::instantiated;
 use g7_model::{Document, FileId, Problem};
 
@@ -160,12 +161,13 @@ impl Format {
     /// Writes a document, which must have been read without errors; None if the format is not
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
-        self.writer.map(|write| write(&arrays::singled(&instantiated(document).0)))
+        self.writer.map(|write| write(&arrays::singled(&decomposed(&instantiated(document).0).0)))
     }
 
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
-        self.in_dialect.map(|write| write(&arrays::singled(&instantiated(document).0), dialect))
+        self.in_dialect
+            .map(|write| write(&arrays::singled(&decomposed(&instantiated(document).0).0), dialect))
     }
 }
 

@@ -1,13 +1,16 @@
 //! Completion: the words that are possible at a place of the text.
 
+use g7_compile::references::{Declared, Kind, Member, Types};
 use g7_model::instances::drawn_for;
 use g7_model::words::{self, Told, Word};
-use g7_model::{Document, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, say};
+use g7_model::{
+    Composed, Document, Item, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, VarKind, say,
+};
 use g7_syntax::{Token, TokenKind};
 
 use crate::file::{File, floor};
 use crate::names::{Meaning, names, sort};
-use crate::tables::declaration;
+use crate::tables::{declaration, member_declaration};
 
 /// The possible words, and the place at which the word begins.
 #[derive(Debug)]
@@ -40,6 +43,10 @@ enum Around {
     Plant,
     Test,
     Layout,
+    /// A structure.
+    Struct,
+    /// A function block, outside of its body.
+    Block,
     /// Statements.
     Body,
 }
@@ -100,9 +107,14 @@ impl Place<'_> {
                 Vec::new()
             }
             (TokenKind::PathDot, _) => self.members(),
-            // A dot that nothing follows yet.
-            (TokenKind::Sign, ".") if last.end as u32 == self.at => self.members(),
-            (TokenKind::Colon, _) if self.declares() => types(),
+            (TokenKind::Sign, ".") if self.joins(last) => self.members(),
+            (TokenKind::Colon, _) if around == Around::Struct || self.declares() => {
+                [types(), self.composed(around)].concat()
+            }
+            (_, "OF" | "of") if around == Around::Struct || self.declares() => {
+                let elementary = types().into_iter().filter(|c| !c.insert.contains(' '));
+                elementary.chain(self.composed(around)).collect()
+            }
             (TokenKind::Arrow, _) => self.steps(),
             (_, "profile") => {
                 let one = |p: ProfileName| choice(p.name(), "profile", Said::foreign(p.does()[0]), p.name());
@@ -117,6 +129,8 @@ impl Place<'_> {
                 Around::Plant => keywords(words::PLANT),
                 Around::Test => keywords(words::TEST),
                 Around::Layout => self.steps(),
+                Around::Struct => Vec::new(),
+                Around::Block => keywords(words::BLOCK),
                 Around::Body => [self.values(), functions()].concat(),
             },
             (
@@ -124,7 +138,7 @@ impl Place<'_> {
                 "step" | "initial" | "macro" | "enclosing" | "chart" | "macrochart" | "task" | "var"
                 | "input",
             )
-            | (_, "output" | "const") => Vec::new(),
+            | (_, "output" | "inout" | "const" | "struct") => Vec::new(),
             (TokenKind::Comma | TokenKind::LParen, _) if around == Around::Chart && !self.after("when") => {
                 self.steps()
             }
@@ -136,6 +150,14 @@ impl Place<'_> {
         }
     }
 
+    /// True if a dot joins what is typed to what stands before it: nothing follows the dot yet, or it stands close
+    /// behind an index. Elsewhere such a dot is AND.
+    fn joins(&self, dot: &Token) -> bool {
+        let index = self.before.iter().rev().nth(1).filter(|t| t.end == dot.start && self.word(t) == "]");
+        let typed = self.text.get(dot.end..self.at as usize).unwrap_or(" ");
+        typed.is_empty() || index.is_some() && !typed.contains(char::is_whitespace)
+    }
+
     /// True if a statement or an item begins here.
     fn begins(&self, last: &Token) -> bool {
         let between = self.text.get(last.end..self.at as usize).unwrap_or("");
@@ -145,32 +167,47 @@ impl Place<'_> {
 
     /// The item whose braces enclose the place, found by its first word.
     fn around(&self) -> Around {
-        let mut open: Vec<Around> = Vec::new();
-        let mut head: Option<&str> = None;
+        self.open().last().map_or(Around::File, |(around, _)| *around)
+    }
+
+    /// The name of the item of a kind that encloses the place.
+    fn enclosing(&self, kind: Around) -> Option<&str> {
+        let (_, name) = self.open().into_iter().find(|(around, _)| *around == kind)?;
+        self.before.get(name).map(|t| self.word(t).trim_matches('`'))
+    }
+
+    /// The items whose braces enclose the place, the outermost first, each with the token that is its name.
+    fn open(&self) -> Vec<(Around, usize)> {
+        let mut open: Vec<(Around, usize)> = Vec::new();
+        let mut head: Option<usize> = None;
+        let text_of = |i: usize| self.before.get(i).map_or("", |t| self.word(t));
         for (i, t) in self.before.iter().enumerate() {
             let first = i.checked_sub(1).and_then(|i| self.before.get(i)).is_none_or(|b| {
                 matches!(b.kind, TokenKind::LBrace | TokenKind::RBrace)
                     || self.text.get(b.end..t.start).unwrap_or("").contains('\n')
             });
-            let word = self.word(t);
             if first {
-                head = Some(word);
+                head = Some(i);
             }
             match t.kind {
                 TokenKind::LBrace => {
-                    let inside = open.last().copied().unwrap_or(Around::File);
-                    let opened = match (inside, head.unwrap_or("")) {
+                    let inside = open.last().map_or(Around::File, |(around, _)| *around);
+                    let head_at = head.unwrap_or(i);
+                    let block = text_of(head_at + 1) == "block" && text_of(head_at + 2) != "(";
+                    let opened = match (inside, head.map_or("", text_of)) {
                         (Around::File, "chart" | "macrochart" | "task") => Around::Chart,
                         (Around::File, "plant") => Around::Plant,
                         (Around::File, "test") => Around::Test,
                         (Around::File, "layout") => Around::Layout,
+                        (Around::File, "struct") => Around::Struct,
+                        (Around::File, "function") if block => Around::Block,
                         (Around::Chart, "step" | "initial" | "entry" | "exit" | "macro" | "enclosing") => {
                             Around::Step
                         }
                         (Around::Test, _) => Around::Test,
                         _ => Around::Body,
                     };
-                    open.push(opened);
+                    open.push((opened, head_at + if opened == Around::Block { 2 } else { 1 }));
                     head = None;
                 }
                 TokenKind::RBrace => {
@@ -180,7 +217,7 @@ impl Place<'_> {
                 _ => {}
             }
         }
-        open.last().copied().unwrap_or(Around::File)
+        open
     }
 
     /// True if a word or sign occurs earlier on this line.
@@ -200,22 +237,99 @@ impl Place<'_> {
 
     /// True if this line is a declaration.
     fn declares(&self) -> bool {
-        ["input", "output", "var", "const", "state", "function", "parts"].iter().any(|w| self.after(w))
+        ["input", "output", "inout", "var", "const", "state", "function", "parts"]
+            .iter()
+            .any(|w| self.after(w))
     }
 
     fn here(&self) -> Option<&g7_model::Chart> {
         self.document.charts().find(|c| c.at.0.start <= self.at && self.at <= c.at.0.end)
     }
 
+    /// The types that the file declares, where a variable can have one.
+    fn composed(&self, around: Around) -> Vec<Choice> {
+        if around == Around::Body || self.after("state") || self.after("parts") {
+            return Vec::new();
+        }
+        let shown = |c: &Composed| {
+            let what = if c.body.is_some() { say!("function block") } else { say!("structure") };
+            let told = c.comment.as_deref().map_or(what, Said::foreign);
+            choice(&c.name.text, "type", told, &g7_syntax::show_name(&c.name.text))
+        };
+        let items = self.document.items.iter();
+        items.filter_map(|i| if let Item::Composed(c) = i { Some(shown(c)) } else { None }).collect()
+    }
+
+    /// The names before the dot, joined by dots, without their indexes.
+    fn owners(&self) -> Vec<&str> {
+        let mut owners = Vec::new();
+        let mut before = self.before.iter().rev();
+        let dot = |t: &Token| t.kind == TokenKind::PathDot || self.word(t) == ".";
+        while before.next().is_some_and(dot) {
+            let mut name = before.next();
+            let mut depth = 0;
+            while let Some(t) = name {
+                match self.word(t) {
+                    "]" => depth += 1,
+                    "[" => depth -= 1,
+                    _ if depth == 0 => break,
+                    _ => {}
+                }
+                name = before.next();
+            }
+            let Some(name) = name.filter(|t| is_word(t.kind)) else { break };
+            owners.push(self.word(name).trim_matches('`'));
+        }
+        owners.reverse();
+        owners
+    }
+
+    /// The members of the variable before the dot, or of the part of one; None if it has none.
+    fn members_of(&self, owners: &[&str]) -> Option<Vec<Choice>> {
+        let types = Types::of(self.document);
+        let (first, behind) = owners.split_first()?;
+        let block = self.enclosing(Around::Block).and_then(|name| types.named(name));
+        let own = block.and_then(|of| Member::named(of, first)).map(|m| types.kind_of(&m));
+        let (kind, rest) = own.map(|kind| (kind, behind)).or_else(|| {
+            let of_chart = behind.split_first().and_then(|(name, rest)| {
+                let v = types.variable(Some(drawn_for(self.document, first)), name)?;
+                Some((types.kind(v), rest))
+            });
+            let here = self.enclosing(Around::Chart).and_then(|c| types.variable(Some(c), first));
+            let alone = here.or_else(|| types.variable(None, first));
+            of_chart.or_else(|| alone.map(|v| (types.kind(v), behind)))
+        })?;
+        match types.behind(kind, rest) {
+            (found, _) if found.len() < rest.len() => None,
+            (_, Kind::Composed(of)) => {
+                // The parameters stand first: the others are those of the block itself.
+                let mut all: Vec<Member<'_>> = Member::all(of).filter(|m| rank(m).is_some()).collect();
+                all.sort_by_key(rank);
+                let one = |m: Member<'_>| {
+                    let shown = g7_syntax::show_path_name(&m.name.text, false, false);
+                    choice(&m.name.text, "member", Said::foreign(member_declaration(&m)), &shown)
+                };
+                Some(all.into_iter().map(one).collect())
+            }
+            (_, Kind::Plain(Type::Fb(kind))) => {
+                let member = |(m, ty, input): &(&str, Type, bool)| {
+                    let told = if *input { say!("input : {ty}") } else { say!("output : {ty}") };
+                    choice(m, "member", told, m)
+                };
+                Some(kind.members().iter().map(member).collect())
+            }
+            (_, Kind::Plain(_) | Kind::Unknown) => None,
+        }
+    }
+
     /// The names that can follow the dot.
     fn members(&self) -> Vec<Choice> {
-        let mut before = self.before.iter().rev().skip(1).map(|t| self.word(t));
-        let mut owner = before.next().unwrap_or("");
-        if owner == "]" {
-            // `Axis[3].` has the members of `Axis`.
-            owner = before.by_ref().skip_while(|w| *w != "[").nth(1).unwrap_or("");
+        let owners = self.owners();
+        if let Some(found) = self.members_of(&owners) {
+            return found;
         }
-        let owner = drawn_for(self.document, owner.trim_matches('`'));
+        let owner = owners.last().copied().unwrap_or("");
+        let owner = drawn_for(self.document, owner);
         let mut found = Vec::new();
         for n in names(self.document) {
             let name = &*n.name.text;
@@ -226,22 +340,18 @@ impl Place<'_> {
                 Meaning::Variable(v, Some(c)) if *c.name.text == *owner => {
                     found.push(choice(name, "variable", declared(name, v), name));
                 }
-                Meaning::Variable(v, _) if name == owner => {
-                    if let g7_model::Type::Fb(kind) = v.ty {
-                        let member = |(m, ty, input): &(&str, g7_model::Type, bool)| {
-                            let told = if *input { say!("input : {ty}") } else { say!("output : {ty}") };
-                            choice(m, "member", told, m)
-                        };
-                        found.extend(kind.members().iter().map(member));
-                    }
-                }
                 Meaning::Step(..) if name == owner => {
                     found.extend(words::STEP.iter().map(member));
                 }
                 Meaning::Other("parts of the plant", _) if name == owner => {
                     found.extend(words::PART.iter().map(member));
                 }
-                Meaning::Variable(..) | Meaning::Step(..) | Meaning::Chart(_) | Meaning::Other(..) => {}
+                Meaning::Variable(..)
+                | Meaning::Step(..)
+                | Meaning::Chart(_)
+                | Meaning::Type(_)
+                | Meaning::Member(_)
+                | Meaning::Other(..) => {}
             }
         }
         if owner.starts_with('X')
@@ -286,11 +396,17 @@ impl Place<'_> {
     /// The names that an expression can use: variables, steps, charts, parts of plants.
     fn values(&self) -> Vec<Choice> {
         let here = self.here().map(|c| c.name.text.clone());
-        let mut found = Vec::new();
+        let block = self.enclosing(Around::Block);
+        let (mut own, mut found) = (Vec::new(), Vec::new());
         for n in names(self.document) {
             let name = &*n.name.text;
             let shown = g7_syntax::show_name(name);
             match n.meaning {
+                Meaning::Member(m) if block == Some(&*m.of.name.text) => {
+                    let told = Said::foreign(member_declaration(&m));
+                    own.push(choice(name, "variable", told, &shown));
+                }
+                Meaning::Member(_) | Meaning::Type(_) => {}
                 Meaning::Variable(v, None) => found.push(choice(name, "variable", declared(name, v), &shown)),
                 Meaning::Variable(v, Some(c)) => {
                     let inside = here.as_ref() == Some(&c.name.text);
@@ -319,7 +435,19 @@ impl Place<'_> {
                 }
             }
         }
-        found
+        // The names of a function block hide those of the file.
+        found.retain(|c| own.iter().all(|o| o.label != c.label));
+        own.append(&mut found);
+        own
+    }
+}
+
+/// The place of a member among those that can follow a dot; None for what only the body sees.
+fn rank(member: &Member<'_>) -> Option<u8> {
+    match member.declared {
+        Declared::Var(v) if matches!(v.kind, VarKind::Input | VarKind::Output) => Some(0),
+        Declared::Var(_) => Some(1),
+        Declared::InOut(_) | Declared::Local(_) => None,
     }
 }
 

@@ -2,12 +2,13 @@
 
 use std::ops::Range;
 
+use g7_compile::references::{Declared, Member};
 use g7_model::{Language, Problem, Qualifier, Said, StandardFunction, Type, say, words};
 
 use crate::file::File;
-use crate::names::{Meaning, Named, meaning, sort, word_at};
+use crate::names::{Meaning, Named, declared, meaning, sort, word_at};
 use crate::rules;
-use crate::tables::{declaration, kind};
+use crate::tables::{declaration, kind, member_declaration};
 
 /// An explanation of a piece of the text.
 #[derive(Debug)]
@@ -42,7 +43,8 @@ pub fn hover(file: &File, byte: usize) -> Option<Hover> {
         (None, Some(sign)) => sign.clone(),
         (None, None) => file.problems.iter().map(|p| file.source.range(p.at)).find(touches)?,
     };
-    let named = word.as_ref().and_then(|w| meaning(&file.source.document, w));
+    let document = &file.source.document;
+    let named = word.as_ref().and_then(|w| declared(document, byte).or_else(|| meaning(document, w)));
     let (about, rule) = match (named, &word, &sign) {
         (Some(named), _, _) => (Some(describe(&named, language)), None),
         (None, Some(word), _) => (explain(word.text, language), rules::of_word(word.text)),
@@ -107,6 +109,24 @@ fn describe(n: &Named<'_>, language: Language) -> String {
             let kind = kind(c.kind);
             let head = say!("{kind} `{name}`: {steps} steps, {transitions} transitions");
             with(head, c.comment.as_deref())
+        }
+        Meaning::Type(c) => {
+            let word = if c.body.is_some() { "function block" } else { "struct" };
+            let head = with(Said::foreign(format!("`{word} {name}`")), c.comment.as_deref());
+            // The variables of a body are of no use to those who declare one.
+            let shown = Member::all(c).filter(|m| !matches!(m.declared, Declared::Local(_)));
+            let members = shown.map(|m| format!("  \n`{}`", member_declaration(&m)));
+            std::iter::once(head).chain(members).collect()
+        }
+        Meaning::Member(m) => {
+            let head = say!("`{}` of `{}`", member_declaration(&m), m.of.name.text);
+            with(
+                head,
+                match m.declared {
+                    Declared::Var(v) | Declared::InOut(v) => v.comment.as_deref(),
+                    Declared::Local(_) => None,
+                },
+            )
         }
         Meaning::Other(what, comment) => with(say!("{} `{name}`", sort(what)), comment),
     }

@@ -46,6 +46,7 @@ pub fn lenses(readable: &Readable<'_>) -> Vec<Lens> {
             | Item::Target(..)
             | Item::Var(_)
             | Item::Instance(_)
+            | Item::Composed(_)
             | Item::Action(_)
             | Item::Section(_)
             | Item::Function(_)

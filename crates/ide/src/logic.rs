@@ -100,16 +100,28 @@ pub fn read(tongue: Tongue, text: &str) -> Result<String, Said> {
     }
 }
 
+/// A name without the brackets in it: `m.x` for `m[i].x`.
+fn without_indexes(name: &str) -> String {
+    let mut depth = 0_u32;
+    let outside = |c: &char| {
+        let inner = depth > 0;
+        match c {
+            '[' => depth += 1,
+            ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        !inner && *c != '['
+    };
+    name.chars().filter(outside).collect()
+}
+
 /// True if a variable or call is a BOOL: by its declaration, otherwise by the spelling of names of
 /// steps and of members of blocks.
 fn is_boolean(e: &Expr, symbols: Option<&Symbols>) -> bool {
     let text = print_expr(e);
-    // With a variable index, the first element of the array tells the type.
-    let first = match &e.kind {
-        ExprKind::Element(path, ..) => Some(format!("{}[", path.text())),
-        _ => None,
-    };
-    let named = |name: &str| name == text || first.as_deref().is_some_and(|first| name.starts_with(first));
+    // With a variable index, any element of the array tells the type.
+    let array = matches!(e.kind, ExprKind::Element(..)).then(|| without_indexes(&text));
+    let named = |name: &str| name == text || array.as_deref().is_some_and(|a| without_indexes(name) == a);
     let declared = symbols.and_then(|s| s.variables.iter().find(|v| named(&v.name)));
     match declared {
         Some(v) => v.ty == Type::Bool,

@@ -1,7 +1,10 @@
 //! The names that a document defines, and their meaning.
 
+use g7_compile::Definition;
+use g7_compile::references::Member;
 use g7_model::{
-    Chart, ChartItem, Document, InstanceNames, Item, Name, PlantItem, Said, Span, Step, VarDecl, say,
+    Chart, ChartItem, Composed, Document, InstanceNames, Item, Name, PlantItem, Said, Span, Step, VarDecl,
+    say,
 };
 use g7_syntax::{Token, TokenKind};
 
@@ -14,6 +17,10 @@ pub enum Meaning<'d> {
     Step(&'d Chart, &'d Step),
     /// A chart.
     Chart(&'d Chart),
+    /// A structure or function block.
+    Type(&'d Composed),
+    /// A member, a parameter or a variable of one.
+    Member(Member<'d>),
     /// A named action, function, section, plant, or part of a plant: the word for its kind, and its
     /// comment.
     Other(&'static str, Option<&'d str>),
@@ -41,6 +48,15 @@ pub fn names(document: &Document) -> Vec<Named<'_>> {
                 if let InstanceNames::One(name) = &i.names {
                     other(name, "instance", i.comment.as_deref(), None, &mut all);
                 }
+            }
+            Item::Composed(c) => {
+                all.push(Named { name: &c.name, meaning: Meaning::Type(c), scope: None });
+                let scope = Some(c.at.0);
+                all.extend(Member::all(c).map(|m| Named {
+                    name: m.name,
+                    meaning: Meaning::Member(m),
+                    scope,
+                }));
             }
             Item::Action(a) => other(&a.name, "action", a.comment.as_deref(), None, &mut all),
             Item::Section(s) => other(&s.name, "transition section", None, None, &mut all),
@@ -171,11 +187,17 @@ pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>>
     };
     let chart_of = |n: &Named<'d>| match n.meaning {
         Meaning::Step(c, _) | Meaning::Variable(_, Some(c)) => Some(&*c.name.text),
-        Meaning::Variable(_, None) | Meaning::Chart(_) | Meaning::Other(..) => None,
+        Meaning::Variable(_, None)
+        | Meaning::Chart(_)
+        | Meaning::Type(_)
+        | Meaning::Member(_)
+        | Meaning::Other(..) => None,
     };
     let number = word.token.kind == TokenKind::Number;
     let mut found: Vec<Named<'d>> = names(document).into_iter().filter(fits).collect();
     found.retain(|n| !number || matches!(n.meaning, Meaning::Step(..)));
+    // The spelling does not tell whose member a word is; see `declared`.
+    found.retain(|n| !matches!(n.meaning, Meaning::Member(_)));
     if let Some(chart) = word.before
         && let Some(i) = found.iter().position(|n| chart_of(n) == Some(chart))
     {
@@ -188,6 +210,21 @@ pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>>
         Some(_) => 2,
     };
     found.into_iter().min_by_key(rank).filter(|n| !number || rank(n) == 0)
+}
+
+/// The type, or the member of a type, that the file declares and that is named at a byte.
+pub fn declared(document: &Document, byte: usize) -> Option<Named<'_>> {
+    // Following all names is of use only where there are such types.
+    document.items.iter().find(|i| matches!(i, Item::Composed(_)))?;
+    let known = g7_compile::references(document);
+    let definition = known.at(u32::try_from(byte).ok()?)?;
+    names(document).into_iter().find(|n| match (&n.meaning, definition) {
+        (Meaning::Type(_), Definition::Type(name)) => *n.name.text == **name,
+        (Meaning::Member(m), Definition::Member { of, name }) => {
+            *n.name.text == **name && *m.of.name.text == **of
+        }
+        _ => false,
+    })
 }
 
 /// The word for the kind of a name ([`Meaning::Other`]).

@@ -3,8 +3,8 @@
 use std::ops::Range;
 
 use g7_model::{
-    Chart, ChartItem, Instance, InstanceNames, Item, Name, Plant, PlantItem, Property, Said, Span, VarDecl,
-    say,
+    Chart, ChartItem, Composed, Instance, InstanceNames, Item, Name, Plant, PlantItem, Property, Said, Span,
+    VarDecl, say,
 };
 
 use crate::file::Readable;
@@ -57,6 +57,7 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
         Item::Var(v) => variables(v),
         Item::Chart(c) => vec![chart(c)],
         Item::Instance(i) => instance(i),
+        Item::Composed(c) => vec![composed(c)],
         Item::Action(a) => {
             vec![entry(&a.name, Kind::Function, detail(a.comment.as_deref(), || say!("action")), a.at.0)]
         }
@@ -80,6 +81,13 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
 fn instance(i: &Instance) -> Vec<Entry> {
     let InstanceNames::One(name) = &i.names else { return Vec::new() };
     vec![entry(name, Kind::Chart, say!("instance of `{}`", i.chart.text), i.at.0)]
+}
+
+/// A structure or a function block with its members.
+fn composed(c: &Composed) -> Entry {
+    let what = if c.body.is_some() { say!("function block") } else { say!("structure") };
+    let own = entry(&c.name, Kind::Function, detail(c.comment.as_deref(), || what), c.at.0);
+    Entry { inside: c.members.iter().chain(&c.inouts).flat_map(variables).collect(), ..own }
 }
 
 /// A property has no name; its text stands for it.

@@ -1,5 +1,6 @@
 //! The tables of variables and steps.
 
+use g7_compile::references::{Declared, Member};
 use g7_model::{ChartKind, Said, Span, Type, VarDecl, VarKind, say};
 
 use crate::file::Readable;
@@ -116,7 +117,7 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
                 initial: s.initial,
                 at,
             }),
-            Meaning::Chart(_) | Meaning::Other(..) => {}
+            Meaning::Chart(_) | Meaning::Type(_) | Meaning::Member(_) | Meaning::Other(..) => {}
         }
     }
     Tables { stale: readable.stale, variables, steps }
@@ -124,19 +125,24 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
 
 /// The type of a declaration, with the bounds of an array.
 fn type_of(v: &VarDecl) -> String {
-    let Some(array) = &v.array else { return v.ty.to_string() };
+    let ty = v.of.as_ref().map_or_else(|| v.ty.to_string(), |of| of.text.to_string());
+    let Some(array) = &v.array else { return ty };
     let bounds: Vec<String> = array
         .dimensions
         .iter()
         .map(|(least, most)| format!("{}..{}", g7_syntax::print_expr(least), g7_syntax::print_expr(most)))
         .collect();
-    format!("ARRAY[{}] OF {}", bounds.join(", "), v.ty)
+    format!("ARRAY[{}] OF {}", bounds.join(", "), ty)
 }
 
 /// A declaration on one line, as it would stand in the text.
 pub fn declaration(name: &str, v: &VarDecl) -> String {
-    let mut line = format!("{} {name} : {}", class(v.kind), type_of(v));
-    if v.init.is_some() && v.ty != Type::Bool {
+    declaration_after(&format!("{} ", class(v.kind)), name, v)
+}
+
+fn declaration_after(word: &str, name: &str, v: &VarDecl) -> String {
+    let mut line = format!("{word}{name} : {}", type_of(v));
+    if v.init.is_some() && (v.ty != Type::Bool || v.of.is_some()) {
         line.push_str(" := …");
     }
     if let Some(a) = &v.address {
@@ -146,4 +152,16 @@ pub fn declaration(name: &str, v: &VarDecl) -> String {
         line.push_str(" retain");
     }
     line
+}
+
+/// The declaration of a member on one line.
+pub fn member_declaration(member: &Member<'_>) -> String {
+    let name = &*member.name.text;
+    match member.declared {
+        // The members of a structure are declared without a word.
+        Declared::Var(v) if member.of.body.is_none() => declaration_after("", name, v),
+        Declared::Var(v) => declaration(name, v),
+        Declared::InOut(v) => declaration_after("inout ", name, v),
+        Declared::Local(l) => format!("var {name} : {}", l.ty),
+    }
 }

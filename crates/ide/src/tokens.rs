@@ -103,12 +103,14 @@ pub struct Coloured {
 pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
     let text = file.text();
     let readable = file.drawn();
-    let (mut variables, mut steps, mut charts) = (HashSet::new(), HashSet::new(), HashSet::new());
+    let (mut variables, mut steps) = (HashSet::new(), HashSet::new());
+    let (mut charts, mut types) = (HashSet::new(), HashSet::new());
     for n in names(readable.document) {
         let list = match n.meaning {
             Meaning::Step(..) => &mut steps,
             Meaning::Chart(_) => &mut charts,
-            Meaning::Variable(..) | Meaning::Other(..) => &mut variables,
+            Meaning::Type(_) => &mut types,
+            Meaning::Variable(..) | Meaning::Member(_) | Meaning::Other(..) => &mut variables,
         };
         list.insert(&*n.name.text);
     }
@@ -125,11 +127,14 @@ pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
         let class = match token.kind {
             TokenKind::Word | TokenKind::Ticked => {
                 let name = word.trim_matches('`');
-                let known = variables.contains(name) || steps.contains(name) || charts.contains(name);
+                let other = variables.contains(name) || steps.contains(name) || charts.contains(name);
+                let of_file = types.contains(name);
+                let known = other || of_file;
                 let ticked = token.kind == TokenKind::Ticked;
+                let of_language = !ticked && Type::named(&word.to_ascii_uppercase()).is_some();
                 if !ticked && is_keyword(text, word, before, token, behind, known) {
                     Class::Keyword
-                } else if !ticked && Type::named(&word.to_ascii_uppercase()).is_some() && !known {
+                } else if of_language && !known || of_file && (!other || is_type_place(text, before)) {
                     Class::Type
                 } else if charts.contains(name) {
                     Class::Chart
@@ -183,7 +188,18 @@ fn is_keyword(
     if dotted || named {
         return false;
     }
+    // A function can have the name `block`.
+    let own = before.is_some_and(|b| text.get(b.start..b.end) == Some("function")) && word == "block";
+    if own && behind.is_none_or(|b| b.kind != TokenKind::LParen) {
+        return true;
+    }
     begins && words::begins(word) || !begins && !known && words::goes_on(word)
+}
+
+/// True if the name of a type is expected behind a token: a variable can have the name of a type.
+fn is_type_place(text: &str, before: Option<&Token>) -> bool {
+    let word = before.and_then(|b| text.get(b.start..b.end)).unwrap_or("");
+    matches!(word, ":" | "struct" | "block") || word.eq_ignore_ascii_case("of")
 }
 
 /// `X12`, where there is a step 12.

@@ -204,6 +204,7 @@ pub fn variable(kind: VarKind, name: &str, ty: Type, at: Span) -> VarDecl {
         kind,
         names: vec![Name::new(name, at)],
         array: None,
+        of: None,
         ty,
         init: None,
         address: None,

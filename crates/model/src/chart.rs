@@ -46,6 +46,8 @@ pub enum Item {
     Chart(Chart),
     /// `instance Axis[1..6]`.
     Instance(Instance),
+    /// A structure, or a function block of one's own.
+    Composed(Composed),
     /// `action Pump { … }`.
     Action(NamedAction),
     /// `transition section …`.
@@ -221,8 +223,10 @@ pub struct VarDecl {
     pub names: Vec<Name>,
     /// The bounds, of arrays.
     pub array: Option<Box<Array>>,
-    /// Their type; of arrays, that of the elements.
+    /// Their type; of arrays, that of the elements. BOOL where `of` names the type.
     pub ty: Type,
+    /// The name of a type that the file declares, see [`Composed`].
+    pub of: Option<Box<Name>>,
     /// Initial value; the type's zero when absent. Of arrays, a [`crate::ExprKind::List`].
     pub init: Option<Expr>,
     /// Address (`%I0.0`, with its `%`) or channel, as written.
@@ -413,6 +417,24 @@ pub struct Function {
     pub at: Place,
 }
 
+/// `struct Motor { … }` (IEC 61131-3:2003, 2.3.3.1), or `function block Debounce { … }` (2.5.2).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Composed {
+    /// Its name.
+    pub name: Name,
+    /// `"…"`.
+    pub comment: Option<Box<str>>,
+    /// The variables that each variable of this type has. Those of a structure are [`VarKind::Var`]; of a function
+    /// block, inputs and outputs are parameters of its calls.
+    pub members: Vec<VarDecl>,
+    /// The parameters that stand for a variable of the caller; of a function block alone.
+    pub inouts: Vec<VarDecl>,
+    /// The statements of a call; None for a structure.
+    pub body: Option<Body>,
+    /// Where it stands.
+    pub at: Place,
+}
+
 /// `layout Conveyor { … }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -481,6 +503,7 @@ impl Item {
             Item::Var(v) => v.at.0,
             Item::Chart(c) => c.at.0,
             Item::Instance(i) => i.at.0,
+            Item::Composed(c) => c.at.0,
             Item::Action(a) => a.at.0,
             Item::Section(s) => s.at.0,
             Item::Function(f) => f.at.0,

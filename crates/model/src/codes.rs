@@ -79,7 +79,7 @@ codes! {
     NOT_CONSTANT = "G0213" Error "a constant is needed here" "IEC 61131-3:2003, 2.4.2";
     NOT_WRITABLE = "G0214" Error "something that cannot be written" "IEC 61131-3:2003, 2.4.3";
     WRONG_ARGUMENTS = "G0215" Error "a call with the wrong arguments" "IEC 61131-3:2003, 2.5.1.1";
-    RECURSION = "G0216" Error "functions or tasks that call each other in a circle" "IEC 61131-3:2003, 2.5";
+    RECURSION = "G0216" Error "functions, tasks or types in a circle" "IEC 61131-3:2003, 2.5";
     NOT_HERE = "G0217" Error "something that cannot stand in this place" "IEC 61131-3:2003, 2.5.1";
     EXPANSION_SHARED = "G0218" Error "one expansion for two macro-steps" "IEC 60848:2013, 7.5";
     NESTED_IN_ITSELF = "G0219" Error "a chart nested in itself" "IEC 60848:2013, 7.4 and 7.5";

@@ -1,6 +1,6 @@
 //! Expressions as written: receptivities, conditions, right-hand sides.
 
-use crate::{BinaryOp, Name, Nanos, Place, Type, UnaryOp};
+use crate::{BinaryOp, Name, Nanos, Place, Type, UnaryOp, slot_of};
 
 /// An expression with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -34,9 +34,10 @@ pub enum ExprKind {
         /// The delay after which it ends.
         t2: Option<Box<Expr>>,
     },
-    /// `f(x, n := y)`.
+    /// `f(x, n := y)`. Without a name, the initial value of a structure: `(speed := 2.0)`.
     Call(Path, Vec<Arg>),
-    /// An element of an array, or a bit of one: `a[i]`, `Chart.a[i, j]`, `w[i].3`.
+    /// An element of an array, or a bit of one: `a[i]`, `Chart.a[i, j]`, `w[i].3`. In the path of a member, `[]` or `[,]`
+    /// stands for the indexes that are not at its end: `m[i].t[j].x` is `m[].t[].x` with `i` and `j`.
     Element(Box<Path>, Vec<Expr>, Option<Box<Name>>),
     /// `[1, 2, 4(0)]`, the values of an array, each with its number of repetitions.
     List(Vec<(u32, Expr)>),
@@ -104,7 +105,10 @@ impl ExprKind {
             ExprKind::Element(path, index, None) => {
                 let index: Option<Vec<String>> =
                     index.iter().map(|e| e.kind.whole().map(|n| n.to_string())).collect();
-                Some(format!("{}[{}]", path.text(), index?.join(",")))
+                let index = index?;
+                let (full, taken) = filled(&path.text(), &index);
+                let rest = index.get(taken..).unwrap_or_default();
+                Some(if rest.is_empty() { full } else { format!("{full}[{}]", rest.join(",")) })
             }
             _ => None,
         }
@@ -121,6 +125,46 @@ impl ExprKind {
             _ => None,
         }
     }
+}
+
+/// An element as it is written: names, and the indexes behind them; behind the last names there may be none. The names
+/// of [`ExprKind::Element`] without the signs for their indexes.
+pub fn element_parts<'e>(path: &Path, index: &'e [Expr]) -> Vec<(Path, &'e [Expr])> {
+    let (mut parts, mut names, mut rest) = (Vec::new(), Vec::new(), index);
+    let last = path.names.len().saturating_sub(1);
+    for (n, name) in path.names.iter().enumerate() {
+        let slot = slot_of(&name.text).filter(|(_, count)| n < last && *count <= rest.len());
+        let Some((bare, count)) = slot else {
+            names.push(name.clone());
+            continue;
+        };
+        names.push(Name { text: bare.into(), at: name.at });
+        let (own, behind) = rest.split_at(count);
+        parts.push((Path { names: std::mem::take(&mut names) }, own));
+        rest = behind;
+    }
+    parts.push((Path { names }, rest));
+    parts
+}
+
+/// A name with its indexes, `m[3].x` for `m[].x`, and how many of them it has.
+pub fn filled(name: &str, index: &[String]) -> (String, usize) {
+    let (mut full, mut taken) = (String::new(), 0);
+    let mut rest = name;
+    while let Some((before, behind)) = rest.split_once('[') {
+        let slot = behind.split_once(']').filter(|(commas, _)| commas.bytes().all(|b| b == b','));
+        let Some((commas, after)) = slot.filter(|(commas, _)| taken + commas.len() < index.len()) else {
+            full.push_str(&format!("{before}["));
+            rest = behind;
+            continue;
+        };
+        let numbers = index.get(taken..=taken + commas.len()).unwrap_or_default();
+        full.push_str(&format!("{before}[{}]", numbers.join(",")));
+        taken += numbers.len();
+        rest = after;
+    }
+    full.push_str(rest);
+    (full, taken)
 }
 
 impl Path {

@@ -441,6 +441,7 @@ fn constant(param: &Param, value: Option<Expr>) -> VarDecl {
         kind: VarKind::Const,
         names: vec![param.name.clone()],
         array: None,
+        of: None,
         ty: param.ty,
         init: value,
         address: None,

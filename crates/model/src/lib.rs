@@ -25,6 +25,7 @@ extern crate self as g7_model;
 mod action;
 mod chart;
 pub mod codes;
+pub mod composed;
 mod expr;
 mod fix;
 mod functions;
@@ -40,6 +41,7 @@ mod qualifier;
 pub mod said;
 mod scenario;
 mod severity;
+mod similar;
 mod span;
 mod types;
 pub mod visit;
@@ -50,16 +52,16 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Array, Chart, ChartItem, ChartKind, Document, Function, Instance, InstanceNames, Item, Layout,
+    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
     NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
     Transition, VarDecl, VarKind,
 };
-pub use expr::{Arg, Expr, ExprKind, Literal, Path};
+pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_parts, filled};
 pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;
 pub use language::Language;
-pub use name::{Index, Name, Param, chart_in, instance_of};
+pub use name::{Index, Name, Param, chart_in, instance_of, slot_of};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};
@@ -68,5 +70,6 @@ pub use qualifier::{Lasting, Qualifier};
 pub use said::{Part, Said};
 pub use scenario::{Property, PropertyKind, Scenario, TestStmt, TestStmtKind};
 pub use severity::Severity;
+pub use similar::similar;
 pub use span::{FileId, Place, Span};
 pub use types::{Elementary, FbKind, Holds, Type};

@@ -55,6 +55,13 @@ pub fn instance_of(name: &str) -> Option<(&str, Index<'_>)> {
     (!chart.is_empty()).then_some((chart, index))
 }
 
+/// Takes the place of indexes off a name in the path of a member: `m` and 2 for `m[,]`, see
+/// [`crate::ExprKind::Element`].
+pub fn slot_of(name: &str) -> Option<(&str, usize)> {
+    let (bare, commas) = name.strip_suffix(']')?.rsplit_once('[')?;
+    commas.bytes().all(|b| b == b',').then_some((bare, commas.len() + 1))
+}
+
 /// The chart in a name: `Axis` of `Axis[3]`, otherwise the whole name.
 pub fn chart_in(name: &str) -> &str {
     instance_of(name).map_or(name, |(chart, _)| chart)

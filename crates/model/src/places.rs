@@ -5,8 +5,8 @@
 
 use crate::{
     Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
-    ChartItem, ChartKind, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames, Item,
-    Layout, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt,
+    ChartItem, ChartKind, Composed, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames,
+    Item, Layout, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt,
     Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario,
     Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt,
     TestStmtKind, TextEdit, Transition, Type, UnaryOp, VarDecl, VarKind, View, Work,
@@ -120,6 +120,7 @@ structs! {
     Fix { label, edits, sure }
     Function { name, params, result, body, at }
     Instance { chart, names, args, comment, at }
+    Composed { name, comment, members, inouts, body, at }
     Layout { chart, places, at }
     Local { names, ty, init, at }
     Name { text, at }
@@ -140,7 +141,7 @@ structs! {
     TestStmt { kind, at }
     TextEdit { at, text }
     Transition { label, from, to, receptivity, priority, comment, on_clearing, chained, at }
-    VarDecl { kind, names, array, ty, init, address, inverted, retain, safe, comment, at }
+    VarDecl { kind, names, array, ty, of, init, address, inverted, retain, safe, comment, at }
     View { file, bindings, at }
 }
 
@@ -172,6 +173,7 @@ enums! {
         Profile(part), Cycle(time, at), Target(plc, at), Var(part), Chart(part), Action(part), Section(part),
         Function(part), Pre(body, at), Post(body, at), Plant(part), Test(part), Prove(part), Layout(part),
         Instance(part),
+        Composed(part),
     }
     InstanceNames { One(name), Range(least, most) }
     Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Str(text) }

@@ -7,7 +7,7 @@
 use std::slice::from_ref;
 
 use crate::{
-    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Instance,
+    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Instance,
     InstanceNames, Item, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt,
     TestStmtKind, VarDecl, Work,
 };
@@ -55,6 +55,7 @@ pub trait Visitor<'d> {
             Item::Test(t) => t.body.iter().for_each(|s| self.test(s)),
             Item::Prove(p) => self.property(&p.kind),
             Item::Instance(i) => self.instance(i),
+            Item::Composed(c) => self.composed(c),
             Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Layout(_) => {}
         }
     }
@@ -62,6 +63,12 @@ pub trait Visitor<'d> {
     /// The values of a declaration.
     fn variable(&mut self, v: &'d VarDecl) {
         self.exprs(v.array.iter().flat_map(|a| a.bounds()).chain(&v.init).chain(&v.safe));
+    }
+
+    /// The values of the members of a type, and the statements of a function block.
+    fn composed(&mut self, composed: &'d Composed) {
+        composed.members.iter().for_each(|m| self.variable(m));
+        composed.body.iter().for_each(|b| self.body(b));
     }
 
     /// The bounds and the values of parameters of instances.

@@ -3,6 +3,7 @@
 //! visit many situations.
 
 mod body;
+mod composed;
 mod instances;
 mod rng;
 mod script;

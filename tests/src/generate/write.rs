@@ -5,6 +5,7 @@ use g7_model::{Lasting, ProfileName, Qualifier, Type};
 
 use super::Weights;
 use super::body::{self, Driven, Targets};
+use super::composed::composed;
 use super::instances::instances;
 use super::rng::Rng;
 use super::sight::{Sight, duration};
@@ -71,6 +72,7 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
         chart(rng, &mut world, &skeleton, at, &mut out);
     }
     instances(rng, &outside, &mut out);
+    composed(rng, &outside, &mut out);
     out
 }
 

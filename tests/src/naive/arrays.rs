@@ -7,12 +7,25 @@ use super::model::{FILE, Model, ScopeId};
 use super::resolve::Ref;
 use super::value::{NaiveFault, Run, bad};
 
-/// The path of the element with these indexes.
+/// The path of the element with these indexes: each `[]` takes those that it has room for, the last name the rest.
 pub(super) fn element(path: &Path, indexes: &[i128]) -> Path {
+    let mut rest: Vec<String> = indexes.iter().map(i128::to_string).collect();
     let mut names = path.names.clone();
-    if let Some(last) = names.last_mut() {
-        let indexes: Vec<String> = indexes.iter().map(i128::to_string).collect();
-        *last = Name::new(format!("{}[{}]", last.text, indexes.join(",")), last.at.0);
+    let last = names.len().saturating_sub(1);
+    for (k, name) in names.iter_mut().enumerate() {
+        let slot = name.text.rsplit_once('[').filter(|_| k < last);
+        let taken = match slot {
+            Some((_, commas)) if commas.strip_suffix(']').is_some_and(|c| c.bytes().all(|b| b == b',')) => {
+                commas.len()
+            }
+            None if k == last => rest.len(),
+            _ => 0,
+        };
+        let bare = slot.filter(|_| taken > 0).map_or(&*name.text, |(bare, _)| bare);
+        let own: Vec<String> = rest.drain(..taken.min(rest.len())).collect();
+        if !own.is_empty() {
+            *name = Name::new(format!("{bare}[{}]", own.join(",")), name.at.0);
+        }
     }
     Path { names }
 }
@@ -88,9 +101,9 @@ impl Exec<'_> {
         indexes: &[i128],
         bit: Option<&Name>,
     ) -> Run<Ref> {
-        let mut path = element(path, indexes);
+        let mut path = element(&self.numbered(scope, path)?, indexes);
         path.names.extend(bit.cloned());
-        self.m.resolve(scope, &path).ok_or(NaiveFault::Index)
+        self.resolve(scope, &path).ok_or(NaiveFault::Index)
     }
 
     /// `a := b` of whole arrays.

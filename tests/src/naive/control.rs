@@ -40,7 +40,7 @@ pub(super) fn goal(m: &Model, scope: ScopeId, target: &Target) -> Run<Goal> {
                     }
                 }
             }
-            m.resolve(scope, p)
+            m.resolve(scope, &m.constants_in(scope, p))
         }
         Target::Element(e) => Some(Exec::known_element(m, scope, e)?),
         Target::Direct(d, _) => m.resolve_direct(d),

@@ -8,6 +8,7 @@ use g7_model::{
 
 use super::bits;
 use super::builtin;
+use super::composed::Running;
 use super::model::{Model, ScopeId, StepId, VarId, is_name};
 use super::resolve::Ref;
 use super::state::State;
@@ -21,6 +22,8 @@ pub(super) struct Exec<'a> {
     pub(super) m: &'a Model,
     pub(super) s: &'a mut State,
     pub(super) frames: Vec<Frame>,
+    /// The function blocks whose bodies run, the innermost last.
+    pub(super) running: Vec<Running>,
     /// The assigned variables, even if their value did not change.
     pub(super) written: Vec<VarId>,
 }
@@ -30,7 +33,7 @@ const WORK: u32 = 1_000_000;
 
 impl<'a> Exec<'a> {
     pub(super) fn new(m: &'a Model, s: &'a mut State) -> Exec<'a> {
-        Exec { m, s, frames: Vec::new(), written: Vec::new() }
+        Exec { m, s, frames: Vec::new(), running: Vec::new(), written: Vec::new() }
     }
 
     pub(super) fn truth(&mut self, scope: ScopeId, e: &Expr) -> Run<bool> {
@@ -89,7 +92,7 @@ impl<'a> Exec<'a> {
             return None;
         }
         let found = match &e.kind {
-            ExprKind::Path(p) => self.m.resolve(scope, p),
+            ExprKind::Path(p) => self.resolve(scope, p),
             ExprKind::Direct(d) => self.m.resolve_direct(d),
             _ => None,
         };
@@ -104,7 +107,8 @@ impl<'a> Exec<'a> {
         if let Some(local) = self.local(p) {
             return local;
         }
-        match self.m.resolve(scope, p) {
+        let p = &self.numbered(scope, p)?;
+        match self.resolve(scope, p) {
             Some(r) => self.read(&r),
             None => bad(format!("{} is nothing", p.text())),
         }
@@ -154,7 +158,7 @@ impl<'a> Exec<'a> {
     /// other expression reads the section's last result.
     pub(super) fn receptivity(&mut self, scope: ScopeId, e: &Expr) -> Run<bool> {
         if let ExprKind::Path(p) = &e.kind
-            && let Some(Ref::Section(s, name)) = self.m.resolve(scope, p)
+            && let Some(Ref::Section(s, name)) = self.resolve(scope, p)
         {
             let value = self.section(s, &name)?.truth()?;
             self.s.sections.insert((s, name), value);

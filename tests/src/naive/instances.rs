@@ -58,6 +58,7 @@ pub(super) fn charts_of<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'
                 kind: VarKind::Const,
                 names: vec![p.name.clone()],
                 array: None,
+                of: None,
                 ty: p.ty,
                 init: Some(value),
                 address: None,

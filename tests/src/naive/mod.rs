@@ -6,6 +6,7 @@
 mod arrays;
 mod bits;
 mod builtin;
+mod composed;
 mod control;
 mod evolve;
 mod exec;

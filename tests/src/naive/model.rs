@@ -4,9 +4,9 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use g7_model::{
-    Action, ActionKind, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item,
-    Name, NamedAction, Nanos, Order, ProfileName, Section, Situation, StepKind, Switch, TargetPlc, Type,
-    VarDecl, VarKind,
+    Action, ActionKind, Block, Body, Chart, ChartItem, ChartKind, Composed, Document, Expr, ExprKind,
+    Function, Item, Name, NamedAction, Nanos, Order, ProfileName, Section, Situation, StepKind, Switch,
+    TargetPlc, Type, VarDecl, VarKind,
 };
 
 use super::instances::{charts_of, numbered};
@@ -153,6 +153,10 @@ pub(super) struct Model {
     pub(super) vars: Vec<Var>,
     pub(super) addresses: BTreeMap<String, VarId>,
     pub(super) functions: BTreeMap<String, Function>,
+    /// The structures and function blocks of the file.
+    pub(super) types: BTreeMap<String, Composed>,
+    /// The types of all that has members, elements of arrays among them.
+    pub(super) composed: BTreeMap<(ScopeId, String), String>,
     /// The bodies of PRE (true) and POST with their scopes, in the order of the text.
     pub(super) bodies: Vec<(ScopeId, bool, Block)>,
     pub(super) forcings: Vec<Forcing>,
@@ -168,6 +172,13 @@ pub(super) struct Model {
     pub(super) order: Vec<ScopeId>,
 }
 
+/// The structures and function blocks that a file declares.
+fn types(doc: &Document) -> BTreeMap<String, Composed> {
+    let composed =
+        |i: &Item| if let Item::Composed(c) = i { Some((c.name.text.to_string(), c.clone())) } else { None };
+    doc.items.iter().filter_map(composed).collect()
+}
+
 impl Model {
     pub(super) fn new(doc: &Document, profile: Option<ProfileName>) -> Run<Model> {
         let mut model = Model {
@@ -180,6 +191,8 @@ impl Model {
             vars: Vec::new(),
             addresses: BTreeMap::new(),
             functions: BTreeMap::new(),
+            types: types(doc),
+            composed: BTreeMap::new(),
             bodies: Vec::new(),
             forcings: Vec::new(),
             enables: BTreeMap::new(),
@@ -236,13 +249,17 @@ impl Model {
                 | Item::Plant(_)
                 | Item::Test(_)
                 | Item::Prove(_)
+                | Item::Composed(_)
                 | Item::Layout(_) => {}
             }
         }
         Ok(())
     }
 
-    fn declare(&mut self, scope: ScopeId, v: &VarDecl) {
+    pub(super) fn declare(&mut self, scope: ScopeId, v: &VarDecl) {
+        if let Some(of) = &v.of {
+            return self.declare_composed(scope, v, &of.text.clone());
+        }
         for single in self.singles(scope, v) {
             self.declare_single(scope, &single);
             for (name, element) in v.names.iter().zip(&single.names).filter(|_| v.array.is_some()) {

@@ -52,7 +52,7 @@ impl Model {
     }
 
     /// The scopes in which a name is searched: this one, the charts around an expansion, the file.
-    fn chain(&self, scope: ScopeId) -> Vec<ScopeId> {
+    pub(super) fn chain(&self, scope: ScopeId) -> Vec<ScopeId> {
         let mut chain = vec![scope];
         let mut at = scope;
         while let Some(m) = self.scopes[at].macro_step {
@@ -67,21 +67,19 @@ impl Model {
 
     fn variable_in(&self, scope: ScopeId, names: &[&str]) -> Option<Ref> {
         let s = &self.scopes[scope];
-        match *names {
-            [one] => match s.vars.get(one) {
-                Some(&v) => Some(Ref::Var(v)),
-                None => s.sections.contains_key(one).then(|| Ref::Section(scope, one.to_owned())),
-            },
-            [instance, member] => {
-                let &v = s.vars.get(instance)?;
-                let ty = self.vars[v].ty;
-                if ty.is_bits() || ty.is_integer() {
-                    return member.parse().ok().map(|k| Ref::Bit(v, k));
-                }
-                matches!(ty, Type::Fb(_)).then(|| Ref::Member(v, member.to_owned()))
-            }
-            _ => None,
+        let (last, before) = names.split_last()?;
+        if let Some(&v) = s.vars.get(&names.join(".")) {
+            return Some(Ref::Var(v));
         }
+        if before.is_empty() {
+            return s.sections.contains_key(*last).then(|| Ref::Section(scope, (*last).to_owned()));
+        }
+        let &v = s.vars.get(&before.join("."))?;
+        let ty = self.vars[v].ty;
+        if ty.is_bits() || ty.is_integer() {
+            return last.parse().ok().map(|k| Ref::Bit(v, k));
+        }
+        matches!(ty, Type::Fb(_)).then(|| Ref::Member(v, (*last).to_owned()))
     }
 
     fn step_in(&self, scope: ScopeId, names: &[&str]) -> Option<Ref> {

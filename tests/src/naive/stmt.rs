@@ -50,6 +50,9 @@ impl Exec<'_> {
     fn statement(&mut self, scope: ScopeId, s: &Stmt) -> Run<Flow> {
         match &s.kind {
             StmtKind::Assign { target, value } => {
+                if self.copied_whole(scope, target, value)? {
+                    return Ok(Flow::Next);
+                }
                 if let Some(copied) = self.copied(scope, target, value) {
                     return copied.map(|()| Flow::Next);
                 }
@@ -168,7 +171,8 @@ impl Exec<'_> {
                 if let Some(done) = self.assign_local(p, value) {
                     return done;
                 }
-                self.m.resolve(scope, p)
+                let p = self.numbered(scope, p)?;
+                self.resolve(scope, &p)
             }
             ExprKind::Direct(d) => self.m.resolve_direct(d),
             ExprKind::Element(path, index, bit) => {
@@ -224,6 +228,9 @@ impl Exec<'_> {
     }
 
     fn call_statement(&mut self, scope: ScopeId, path: &Path, args: &[Arg]) -> Run<()> {
+        if self.call_own(scope, path, args)? {
+            return Ok(());
+        }
         if let Some(instance) = self.instance(scope, path) {
             return self.call_block(scope, instance, args);
         }
@@ -273,7 +280,7 @@ impl Exec<'_> {
         {
             return Some(Instance::Local(one.text.to_string()));
         }
-        match self.m.resolve(scope, path)? {
+        match self.resolve(scope, path)? {
             Ref::Var(v) if matches!(self.m.vars[v].ty, Type::Fb(_)) => Some(Instance::Var(v)),
             _ => None,
         }

@@ -37,9 +37,10 @@ use g7_model::{Document, Problem};
 use crate::ir::Unit;
 use facts::Facts;
 
-/// Runs all checks of the chart, and those of its target if it names one.
+/// Runs all checks of the chart, and those of its target if it names one. `written` is the document with the
+/// structures and function blocks of its author, `doc` the one with plain variables in their place.
 #[inline(never)]
-pub fn check(doc: &Document, unit: &Unit) -> Vec<Problem> {
+pub fn check(written: &Document, doc: &Document, unit: &Unit) -> Vec<Problem> {
     let facts = Facts::of(unit);
     let mut problems = Vec::new();
     structure::check(unit, &mut problems);
@@ -55,8 +56,8 @@ pub fn check(doc: &Document, unit: &Unit) -> Vec<Problem> {
         target::check(doc, unit, plc, &mut problems);
     }
     ends::check(&facts, &mut problems);
-    unused::check(doc, &mut problems);
-    idle::check(doc, &mut problems);
+    unused::check(written, &mut problems);
+    idle::check(written, &mut problems);
     remainder::check(doc, &mut problems);
     problems
 }

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use g7_model::visit::Visitor;
-use g7_model::{Document, Item, Name, Order, Situation, Span};
+use g7_model::{Document, Index, Item, Name, Order, Situation, Span, instance_of, slot_of};
 
 /// All names except where they are declared. Every word of a body in another language counts.
 pub(super) fn names(doc: &Document) -> HashSet<&str> {
@@ -27,6 +27,15 @@ struct Names<'d> {
 impl<'d> Names<'d> {
     fn name(&mut self, name: &'d Name) {
         self.found.insert(&name.text);
+        if let Some((bare, index)) = instance_of(&name.text) {
+            self.found.insert(bare);
+            self.found.extend(if let Index::Parameter(parameter, _) = index {
+                Some(parameter)
+            } else {
+                None
+            });
+        }
+        self.found.extend(slot_of(&name.text).map(|(bare, _)| bare));
     }
 }
 

@@ -67,6 +67,7 @@ impl At {
             kind,
             names: vec![self.name(name)],
             array: None,
+            of: None,
             ty,
             init,
             address: None,

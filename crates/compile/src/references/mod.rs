@@ -8,11 +8,13 @@
 //! Names are looked up in the order of `resolve`. An unknown name stands in a list of its own. Plants
 //! and tests are followed too; they see the charts from outside.
 
+mod members;
 mod named;
 mod walk;
 
 use g7_model::{Document, Span};
 
+pub use members::{Declared, Kind, Member, Types};
 pub use named::{Definition, Unknown, Use, Written};
 
 /// Every name of a document with what it refers to, in the order of the text.

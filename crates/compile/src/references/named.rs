@@ -39,6 +39,15 @@ pub enum Definition {
     },
     /// A function.
     Function(String),
+    /// A structure or function block that the file declares.
+    Type(String),
+    /// A member, a parameter or a variable of one.
+    Member {
+        /// The structure or function block.
+        of: String,
+        /// Its name.
+        name: String,
+    },
     /// A transition with a label.
     Transition {
         /// Its chart.

@@ -1,6 +1,6 @@
 //! Each name leads to what the rules of the language say (grammar.md, "A `path` names").
 
-use g7_model::FileId;
+use g7_model::{FileId, Span};
 
 use super::{Definition, References, Written, references};
 
@@ -43,8 +43,8 @@ layout G {
 }
 ";
 
-fn read() -> (String, References) {
-    let text = TEXT.to_owned();
+fn read(text: &str) -> (String, References) {
+    let text = text.to_owned();
     let (doc, problems) = g7_syntax::parse(&text, FileId(0));
     assert!(problems.is_empty(), "{problems:?}");
     (text, references(&doc))
@@ -52,14 +52,18 @@ fn read() -> (String, References) {
 
 /// The lines on which a thing is named, from 1, with the word there.
 fn places(definition: &Definition) -> Vec<(usize, String)> {
-    let (text, refs) = read();
-    refs.of(definition)
-        .iter()
-        .map(|s| {
-            let line = text.get(..s.start as usize).unwrap_or_default().matches('\n').count() + 1;
-            (line, text.get(s.start as usize..s.end as usize).unwrap_or_default().to_owned())
-        })
-        .collect()
+    places_in(TEXT, definition)
+}
+
+fn places_in(text: &str, definition: &Definition) -> Vec<(usize, String)> {
+    let (text, refs) = read(text);
+    refs.of(definition).iter().map(|s| place(&text, *s)).collect()
+}
+
+/// The line of a place, from 1, with the word there.
+fn place(text: &str, s: Span) -> (usize, String) {
+    let line = text.get(..s.start as usize).unwrap_or_default().matches('\n').count() + 1;
+    (line, text.get(s.start as usize..s.end as usize).unwrap_or_default().to_owned())
 }
 
 fn step(chart: &str, name: &str) -> Definition {
@@ -110,7 +114,7 @@ fn charts_and_labels_have_places_too() {
 
 #[test]
 fn the_name_at_a_byte_is_found_and_how_it_is_written() {
-    let (text, refs) = read();
+    let (text, refs) = read(TEXT);
     let at = text.find("X12 and 3s").expect("it is there");
     for offset in [at, at + 1, at + 3] {
         let found = refs.use_at(u32::try_from(offset).expect("short")).expect("a name");
@@ -120,4 +124,132 @@ fn the_name_at_a_byte_is_found_and_how_it_is_written() {
     assert_eq!(refs.at(u32::try_from(at + 5).expect("short")), None);
     let declared = refs.declaration(&step("G", "12")).expect("declared");
     assert_eq!(text.get(..declared.start as usize).map(|t| t.ends_with("step ")), Some(true));
+}
+
+/// Structures and function blocks: the names of members are those of the type, wherever a path comes from.
+const TYPES: &str = "\
+const N : INT := 2
+struct Motor {
+  speed : REAL := 1.5
+  limits : ARRAY[1..N] OF INT
+}
+function block Debounce {
+  input raw : BOOL
+  output q : BOOL
+  inout n : INT
+  var t : TON
+  body {
+    var i : INT
+    t(IN := raw, PT := 10ms);
+    i := N;
+    n := n + i;
+    q := t.Q AND NOT raw AND k > 0 AND t.Z;
+  }
+}
+function block Pair {
+  input raw : BOOL
+  inout sum : INT
+  var d : ARRAY[1..N] OF Debounce
+  var `m x` : Motor
+  body {
+    var i : INT
+    FOR i := 1 TO N DO
+      d[i](raw := raw, n := sum, wrong := 1);
+    END_FOR
+    `m x`.speed := 1.0;
+    d[1].t(IN := d[i + 1].q);
+  }
+}
+var m : ARRAY[1..2] OF Motor := [(speed := 2.0), (limits := [7, 8], size := 1)]
+var k, i : INT
+var d : Debounce
+var p : Pair
+output lamp : BOOL
+chart G {
+  var d : Pair
+  var i : INT
+  initial step 0 {
+    each scan: d[i](raw := m[i].limits[k] > 0, sum := k)
+    each scan: p(raw := lamp, sum := k)
+    P1 { m[i].speed := m[1].speed; m[i + 1] := m[1] }
+    S lamp if d.d[i].q and d.q
+  }
+  0 -> 0 when not p.d[1].q
+}
+chart H {
+  initial step 0 { each scan: d(raw := lamp, q => lamp, n := k) }
+  0 -> 0 when d.q and G.d.d[2].t.Q and nothing.q and m[1].limits[2] > 0
+}
+chart A(i : INT) {
+  var d : Debounce
+  initial step 0 { each scan: d(n := k) }
+}
+instance A[1..2]
+instance Lift : A(7)
+plant P {
+  state x : BOOL := FALSE
+  drive lamp := d.q
+}
+test \"t\" with P {
+  expect d.q, G.d.`m x`.speed > 0.5, A[1].d.q, Lift.d.q, A[2].d.t.Q, x, p.d[1].i = 0
+}
+prove never p.d[1].q and H.d.q
+";
+
+fn of_type(name: &str) -> Definition {
+    Definition::Type(name.into())
+}
+
+fn member(of: &str, name: &str) -> Definition {
+    Definition::Member { of: of.into(), name: name.into() }
+}
+
+/// The lines on which a thing of [`TYPES`] is named.
+fn lines(definition: &Definition) -> Vec<usize> {
+    places_in(TYPES, definition).into_iter().map(|(line, _)| line).collect()
+}
+
+#[test]
+fn members_are_found_in_paths_calls_values_and_bodies() {
+    let motor = listed(&[(2, "Motor"), (23, "Motor"), (33, "Motor")]);
+    assert_eq!(places_in(TYPES, &of_type("Motor")), motor);
+    assert_eq!(lines(&of_type("Debounce")), [6, 22, 35, 54]);
+    assert_eq!(lines(&member("Motor", "speed")), [3, 29, 33, 44, 44, 64]);
+    assert_eq!(lines(&member("Motor", "limits")), [4, 33, 42, 51]);
+    assert_eq!(lines(&member("Debounce", "raw")), [7, 13, 16, 27, 50]);
+    assert_eq!(lines(&member("Debounce", "q")), [8, 16, 30, 45, 47, 50, 51, 61, 64, 64, 64, 66]);
+    assert_eq!(lines(&member("Debounce", "n")), [9, 15, 15, 27, 50, 55]);
+    assert_eq!(lines(&member("Debounce", "t")), [10, 13, 16, 16, 30, 51, 64]);
+    assert_eq!(lines(&member("Pair", "sum")), [21, 27, 42, 43]);
+    let ticked = listed(&[(23, "`m x`"), (29, "`m x`"), (64, "`m x`")]);
+    assert_eq!(places_in(TYPES, &member("Pair", "m x")), ticked);
+}
+
+#[test]
+fn each_name_before_a_member_hides_those_further_outside() {
+    // In the bodies, `d` and `i` are members and local variables.
+    assert_eq!(lines(&member("Pair", "d")), [22, 27, 30, 30, 45, 47, 51, 64, 66]);
+    assert_eq!(lines(&member("Pair", "i")), [25, 26, 27, 30]);
+    assert_eq!(lines(&member("Debounce", "i")), [12, 14, 15, 64]);
+    assert_eq!(lines(&variable(None, "d")), [35, 50, 51, 61, 64]);
+    assert_eq!(lines(&variable(Some("G"), "d")), [39, 42, 45, 45, 51, 64]);
+    // Of instances, too, with a number or with a name of their own.
+    assert_eq!(lines(&variable(Some("A"), "d")), [54, 55, 64, 64, 64]);
+    assert_eq!(lines(&variable(Some("G"), "i")), [40, 42, 42, 44, 44, 45]);
+    assert_eq!(lines(&variable(None, "i")), [34]);
+    assert_eq!(lines(&variable(None, "N")), [1, 4, 14, 22, 26]);
+    assert_eq!(lines(&variable(None, "m")), [33, 42, 44, 44, 44, 44, 51]);
+    assert_eq!(lines(&variable(None, "k")), [16, 34, 42, 42, 43, 50, 55]);
+}
+
+#[test]
+fn a_member_that_is_not_there_is_unknown() {
+    let (text, refs) = read(TYPES);
+    let unknown: Vec<_> = refs.unknown().iter().map(|u| place(&text, u.at)).collect();
+    let names =
+        [(16, "Z"), (27, "wrong"), (33, "size"), (45, "q"), (51, "nothing"), (51, "q"), (66, "d"), (66, "q")];
+    assert_eq!(unknown, listed(&names));
+    let (_, refs) = read("var d : Missing := (a := 1)\nvar n : INT := (a := 1)\nprove never d.q\n");
+    let unknown: Vec<u32> = refs.unknown().iter().map(|u| u.at.start).collect();
+    assert_eq!(unknown, [8, 20, 44, 66]);
 }

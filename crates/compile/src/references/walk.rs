@@ -5,20 +5,30 @@ use std::collections::{HashMap, HashSet};
 use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
-    Block, Chart, ChartItem, Document, Index, Instance, InstanceNames, Item, Name, Order, Placed, Plant,
-    PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl, chart_in, instance_of,
+    Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item,
+    Name, Order, Path, Placed, Plant, PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl,
+    chart_in, instance_of, slot_of,
 };
 
+use super::members::{Kind, Member, Types};
 use super::named::{Definition, Unknown, Use, Written};
 use crate::ir::ChartId;
-use crate::resolve::{Tracer, resolve_open};
+use crate::resolve::{Followed, Traced, Tracer, resolve_open};
 
 /// Returns every name with what it refers to, and the names that refer to nothing.
 pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
     let resolved = uninstantiated(doc);
     let (mut unit, mut scopes, _) = resolve_open(&resolved, None);
     let tracer = Tracer::new(&mut unit, &mut scopes);
-    let mut walk = Walk { tracer, locals: Vec::new(), plant: None, uses: Vec::new(), unknown: Vec::new() };
+    let mut walk = Walk {
+        tracer,
+        types: Types::of(&resolved),
+        within: None,
+        locals: Vec::new(),
+        plant: None,
+        uses: Vec::new(),
+        unknown: Vec::new(),
+    };
     let mut charts = 0;
     for item in &doc.items {
         if let Item::Chart(chart) = item {
@@ -48,6 +58,8 @@ fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
             | Definition::Section { chart, .. } => chart.as_mut(),
             Definition::Chart(_)
             | Definition::Function(_)
+            | Definition::Type(_)
+            | Definition::Member { .. }
             | Definition::Plant(_)
             | Definition::PlantItem { .. } => None,
         };
@@ -61,6 +73,9 @@ fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
 
 struct Walk<'u, 'd> {
     tracer: Tracer<'u, 'd>,
+    types: Types<'d>,
+    /// The function block whose body is being walked; its names hide all others.
+    within: Option<&'d Composed>,
     locals: Vec<HashSet<&'d str>>,
     /// The plant that is being walked, and its names; they hide those of the charts.
     plant: Option<(&'d Plant, HashSet<&'d str>)>,
@@ -88,16 +103,116 @@ impl<'d> Walk<'_, 'd> {
         Some(std::iter::once(Name::new(chart, first.at.0)).chain(members.iter().cloned()).collect())
     }
 
-    /// The parameter in the name of an instance, `Axis[i + 1]`: it stands right behind the bracket.
+    /// The variable in an index that is part of a name, `Axis[i + 1]`: it stands right behind the bracket.
     fn index(&mut self, name: &Name) {
         let Some((_, Index::Parameter(parameter, _))) = instance_of(&name.text) else { return };
+        if !is_before_index(name) {
+            return;
+        }
         let start = name.at.0.end + 1;
         let at = Span { start, end: start + parameter.len() as u32, ..name.at.0 };
-        let found = self.tracer.path(&[Name::new(parameter, at)], &self.locals).names.into_iter().next();
+        let found = self.follow(&[Name::new(parameter, at)]).0.names.into_iter().next();
         match found {
             Some((_, definition, _)) => self.add(at, definition, Written::Name),
+            None if self.is_local(parameter) => {}
             None => self.unknown.push(Unknown { at, step_of: None }),
         }
+    }
+
+    fn is_local(&self, name: &str) -> bool {
+        self.locals.iter().any(|l| l.contains(name))
+    }
+
+    /// Finds what the names of a path refer to, and what the whole of it is, as far as the file declares its type.
+    fn follow(&self, names: &[Name]) -> (Followed, Kind<'d>) {
+        if let Some(found) = self.part(names) {
+            return found;
+        }
+        let named = self.of_instance(names);
+        (self.tracer.path(named.as_deref().unwrap_or(names), &self.locals), Kind::Unknown)
+    }
+
+    /// The same for a path to a variable of a type that the file declares, to a member of one, and behind an index;
+    /// None for other paths.
+    fn part(&self, names: &[Name]) -> Option<(Followed, Kind<'d>)> {
+        let indexed = names.iter().any(|n| n.text.ends_with(']'));
+        if self.types.is_empty() && !indexed {
+            return None;
+        }
+        let names = self.bare(names);
+        let first = names.first()?;
+        if self.is_local(&first.text) {
+            return Some((Followed::whole(Vec::new()), Kind::Unknown));
+        }
+        let own = self.within.and_then(|of| Member::named(of, &first.text));
+        let (mut found, kind) = match own {
+            Some(member) => (vec![(0, member.definition(), 0)], self.types.kind_of(&member)),
+            None => self.variable_at(&names, indexed)?,
+        };
+        let behind: Vec<&str> = names.iter().skip(found.len()).map(|n| &*n.text).collect();
+        let (members, kind) = self.types.behind(kind, &behind);
+        let from = found.len();
+        found.extend(members.iter().enumerate().map(|(k, member)| (from + k, member.definition(), 0)));
+        let whole = match (names.get(found.len()..).unwrap_or_default(), kind) {
+            ([], _) => true,
+            ([part], Kind::Plain(ty)) => Tracer::has_part(ty, &part.text),
+            _ => false,
+        };
+        Some((Followed { names: found, whole }, kind))
+    }
+
+    /// The variable with which a path begins, after its chart if that is named; None if no member can follow it.
+    fn variable_at(&self, names: &[Name], indexed: bool) -> Option<(Vec<Traced>, Kind<'d>)> {
+        let chart = names.first().and_then(|n| self.tracer.chart(&n.text));
+        let of_chart = names.get(..2).filter(|_| chart.is_some());
+        [of_chart, names.get(..1)].into_iter().flatten().find_map(|begin| {
+            let found = self.tracer.path(begin, &[]).names;
+            let Some((_, Definition::Variable { chart, name }, _)) = found.last() else { return None };
+            let v = self.types.variable(chart.as_deref(), name)?;
+            let fits = found.len() == begin.len() && (v.of.is_some() || indexed);
+            fits.then(|| (found, self.types.kind(v)))
+        })
+    }
+
+    /// The names of a path without their indexes.
+    fn bare(&self, names: &[Name]) -> Vec<Name> {
+        let last = names.len().saturating_sub(1);
+        let one = |(k, name): (usize, &Name)| {
+            let slot = slot_of(&name.text).filter(|_| k < last).map(|(bare, _)| bare);
+            let numbered = || instance_of(&name.text).filter(|_| is_before_index(name)).map(|(bare, _)| bare);
+            let text = slot.or_else(numbered).unwrap_or(&name.text);
+            Name { text: text.into(), at: name.at }
+        };
+        names.iter().enumerate().map(one).collect()
+    }
+
+    /// Adds the names of a path; returns what the whole of it is.
+    fn add_path(&mut self, names: &[Name]) -> Kind<'d> {
+        names.iter().for_each(|n| self.index(n));
+        let only = names.len() == 1;
+        let first = self.plant.iter().find_map(|(p, own)| {
+            let first = self.bare(names).into_iter().next()?;
+            (own.contains(&*first.text) && !self.is_local(&first.text)).then_some((first, *p))
+        });
+        if let Some((first, plant)) = first {
+            let (plant, name) = (plant.name.text.to_string(), first.text.to_string());
+            let written = Written::Path { first: true, only };
+            self.add(first.at.0, Definition::PlantItem { plant, name }, written);
+            return Kind::Unknown;
+        }
+        let (followed, kind) = self.follow(names);
+        if !followed.whole {
+            let known = |k: usize| followed.names.iter().any(|(of, ..)| *of == k);
+            let missing = names.iter().enumerate().filter(|(k, _)| !known(*k));
+            self.unknown.extend(missing.map(|(_, name)| Unknown { at: name.at.0, step_of: None }));
+        }
+        for (k, definition, before) in followed.names {
+            if let Some(name) = names.get(k) {
+                let written = Written::Path { first: k == 0, only };
+                self.uses.push(Use { at: name.at.0, definition, written, before });
+            }
+        }
+        kind
     }
 
     /// A name that can only be that of a step of a chart.
@@ -114,6 +229,7 @@ impl<'d> Walk<'_, 'd> {
         match item {
             Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Chart(_) => {}
             Item::Instance(i) => self.named_instance(i),
+            Item::Composed(c) => self.composed(c),
             Item::Var(v) => self.variable(None, v),
             Item::Action(a) => self.named(None, a),
             Item::Section(s) => self.section(None, s),
@@ -175,7 +291,56 @@ impl<'d> Walk<'_, 'd> {
             let def = Definition::Variable { chart: chart.map(str::to_owned), name: name.text.to_string() };
             self.add(name.at.0, def, Written::Declared);
         }
-        v.init.iter().chain(&v.safe).for_each(|e| self.expr(e));
+        self.declaration(v);
+    }
+
+    /// All of a declaration but the names that it declares.
+    fn declaration(&mut self, v: &'d VarDecl) {
+        if let Some(of) = &v.of {
+            let known = self.types.named(&of.text).map(|c| Definition::Type(c.name.text.to_string()));
+            self.name(of, known, Written::Name);
+        }
+        self.exprs(v.array.iter().flat_map(|a| a.bounds()));
+        v.init.iter().for_each(|e| self.initial(e, self.types.kind(v)));
+        self.exprs(&v.safe);
+    }
+
+    /// An initial value, `(speed := 2.0)` or a list of such for a variable with members.
+    fn initial(&mut self, e: &'d Expr, kind: Kind<'d>) {
+        match &e.kind {
+            ExprKind::List(values) => values.iter().for_each(|(_, e)| self.initial(e, kind)),
+            ExprKind::Call(path, fields) if path.names.is_empty() => {
+                for field in fields {
+                    let inner = self.argument(field, kind);
+                    self.initial(&field.value, inner);
+                }
+            }
+            _ => self.expr(e),
+        }
+    }
+
+    /// The name of an argument or of a field, which is a member of a type; returns what that member is.
+    fn argument(&mut self, arg: &Arg, kind: Kind<'d>) -> Kind<'d> {
+        let Some(name) = &arg.name else { return Kind::Unknown };
+        let member = match kind {
+            Kind::Composed(of) => Member::named(of, &name.text),
+            Kind::Plain(_) | Kind::Unknown => None,
+        };
+        self.name(name, member.map(|m| m.definition()), Written::Name);
+        member.map_or(Kind::Unknown, |m| self.types.kind_of(&m))
+    }
+
+    /// A structure or function block.
+    fn composed(&mut self, c: &'d Composed) {
+        self.add(c.name.at.0, Definition::Type(c.name.text.to_string()), Written::Declared);
+        for member in Member::all(c) {
+            self.add(member.name.at.0, member.definition(), Written::Declared);
+        }
+        // The values of members see the file alone: they are written where a variable is declared.
+        c.members.iter().chain(&c.inouts).for_each(|v| self.declaration(v));
+        self.within = Some(c);
+        c.body.iter().for_each(|b| self.body(b));
+        self.within = None;
     }
 
     fn named(&mut self, chart: Option<&str>, a: &'d g7_model::NamedAction) {
@@ -256,34 +421,16 @@ impl<'d> Walk<'_, 'd> {
 
 impl<'d> Visitor<'d> for Walk<'_, 'd> {
     fn path(&mut self, names: &'d [Name]) {
-        let local = |w: &Self, n: &Name| w.locals.iter().any(|l| l.contains(&*n.text));
-        let of_plant = match (names.first(), &self.plant) {
-            (Some(first), Some((p, own))) if own.contains(&*first.text) && !local(self, first) => {
-                let plant = p.name.text.to_string();
-                Some((first.at.0, Definition::PlantItem { plant, name: first.text.to_string() }))
-            }
-            _ => None,
-        };
-        let only = names.len() == 1;
-        if let Some((at, def)) = of_plant {
-            return self.add(at, def, Written::Path { first: true, only });
+        self.add_path(names);
+    }
+
+    fn call(&mut self, path: &'d Path, args: &'d [Arg]) {
+        let kind = self.add_path(&path.names);
+        // The parameters of functions and of function blocks of the standard are not followed.
+        if matches!(kind, Kind::Composed(_)) || path.names.is_empty() {
+            args.iter().for_each(|a| _ = self.argument(a, kind));
         }
-        let named = self.of_instance(names);
-        if named.is_some() {
-            names.first().into_iter().for_each(|n| self.index(n));
-        }
-        let followed = self.tracer.path(named.as_deref().unwrap_or(names), &self.locals);
-        if !followed.whole {
-            let known = |k: usize| followed.names.iter().any(|(of, ..)| *of == k);
-            let missing = names.iter().enumerate().filter(|(k, _)| !known(*k));
-            self.unknown.extend(missing.map(|(_, name)| Unknown { at: name.at.0, step_of: None }));
-        }
-        for (k, definition, before) in followed.names {
-            if let Some(name) = names.get(k) {
-                let written = Written::Path { first: k == 0, only };
-                self.uses.push(Use { at: name.at.0, definition, written, before });
-            }
-        }
+        self.exprs(args.iter().map(|a| &a.value));
     }
 
     fn direct(&mut self, text: &'d str, at: Span) {
@@ -317,13 +464,20 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
     }
 
     fn enter(&mut self, block: &'d Block) {
-        let own = block.locals.iter().flat_map(|l| &l.names).map(|n| &*n.text).collect();
-        self.locals.push(own);
+        // Those of a function block are its members.
+        let locals = if self.within.is_some() { &[][..] } else { &block.locals };
+        self.locals.push(locals.iter().flat_map(|l| &l.names).map(|n| &*n.text).collect());
     }
 
     fn leave(&mut self) {
         self.locals.pop();
     }
+}
+
+/// True if an index that belongs to the name stands behind it in the text. In back-ticks a name can have this form too;
+/// these then enclose all of it.
+fn is_before_index(name: &Name) -> bool {
+    name.at.0.bytes().len() < name.text.len()
 }
 
 fn plant_named<'d>(doc: &'d Document, name: &str) -> Option<&'d Plant> {

@@ -169,6 +169,7 @@ impl Resolver<'_, '_> {
         let condition = self.optional(condition, Type::Bool);
         let governed = match target {
             WrittenTarget::Path(p) => self.governed(p)?,
+            WrittenTarget::Element(element) if element.kind == Form::Bad => return None,
             WrittenTarget::Element(element) => {
                 let (Form::Element(path, index, None), place) = (&element.kind, element.at.0) else {
                     let what = say!("a bit of an element cannot be driven by an action");

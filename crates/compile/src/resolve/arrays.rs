@@ -16,7 +16,7 @@ use std::collections::HashMap;
 
 use g7_model::{
     Array as Written, Expr as WrittenExpr, ExprKind as Form, Name, Path, Problem, Span, Type, VarDecl, codes,
-    say,
+    filled, say,
 };
 
 use super::refer::Ref;
@@ -44,15 +44,17 @@ impl Array {
         if self.dimensions.is_empty() { 0 } else { self.dimensions.iter().map(|(_, n)| n).product() }
     }
 
-    /// The indexes of an element, as its name has them.
-    fn indexes(&self, mut place: u32) -> String {
+    /// The name of an element: `a[1,2]`, or `m[1].t[2]` for a member of an array of structures.
+    fn element_name(&self, mut place: u32) -> String {
         let mut all: Vec<String> = Vec::new();
         for (least, count) in self.dimensions.iter().rev() {
             all.push((least + i64::from(place % count)).to_string());
             place /= count;
         }
         all.reverse();
-        all.join(",")
+        let (name, taken) = filled(&self.name, &all);
+        let rest = all.get(taken..).unwrap_or_default();
+        if rest.is_empty() { name } else { format!("{name}[{}]", rest.join(",")) }
     }
 
     /// The element with these indexes, each from 0.
@@ -90,7 +92,7 @@ impl<'d> Resolver<'_, 'd> {
                 at: name.at.0,
             };
             for place in 0..array.count() {
-                let element = format!("{}[{}]", array.name, array.indexes(place)).into();
+                let element = array.element_name(place).into();
                 let id = self.add_var(element, class, decl.ty, name.at.0);
                 if let Some(v) = self.unit.vars.get_mut(id.index()) {
                     v.retain = decl.retain;

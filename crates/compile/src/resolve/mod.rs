@@ -47,7 +47,7 @@ use resolver::{Frame, Resolver, Role};
 pub use rules::{of_profile, with_switch};
 pub use scopes::Scopes;
 pub use system::{kept_by_system, set_by_terminal, terminal};
-pub(crate) use trace::Tracer;
+pub(crate) use trace::{Followed, Traced, Tracer};
 
 /// Nominal scan time where none is written: 10 ms.
 const CYCLE: Nanos = Nanos::from_millis(10);

@@ -23,7 +23,7 @@ pub(crate) struct Followed {
 }
 
 impl Followed {
-    fn whole(names: Vec<Traced>) -> Followed {
+    pub(crate) fn whole(names: Vec<Traced>) -> Followed {
         Followed { names, whole: true }
     }
 }
@@ -34,6 +34,13 @@ pub(crate) struct Tracer<'u, 'd>(Resolver<'u, 'd>);
 impl<'u, 'd> Tracer<'u, 'd> {
     pub(crate) fn new(unit: &'u mut Unit, scopes: &'u mut Scopes<'d>) -> Tracer<'u, 'd> {
         Tracer(Resolver::new(unit, scopes))
+    }
+
+    /// True if a name behind a variable of a type is a member of a function block of the standard, or the number of
+    /// a bit.
+    pub(crate) fn has_part(ty: Type, name: &str) -> bool {
+        let member = matches!(ty, Type::Fb(kind) if super::fb::member(kind, name).is_some());
+        member || Resolver::bit_number(name, ty).is_some()
     }
 
     /// The chart in which names are looked up first.

@@ -1,6 +1,6 @@
 //! Expressions in the notation of GRAFCET: `·` for and, `+` for or, an overline for not, `[p > 3]`.
 
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Operands, Path, UnaryOp};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Literal, Operands, Path, UnaryOp, element_parts};
 
 use crate::text::line::{Break, Line, Over};
 use crate::text::{clean, duration};
@@ -94,8 +94,13 @@ impl Setter {
             }
             ExprKind::Call(p, args) => self.call(p, args, depth),
             ExprKind::Element(p, index, member) => {
-                self.text(&path(p));
-                self.indexes(index.iter(), depth);
+                for (n, (names, index)) in element_parts(p, index).into_iter().enumerate() {
+                    self.text(if n > 0 { "." } else { "" });
+                    self.text(&path(&names));
+                    if !index.is_empty() {
+                        self.indexes(index.iter(), depth);
+                    }
+                }
                 if let Some(member) = member {
                     self.text(&format!(".{}", clean(&member.text)));
                 }

@@ -158,6 +158,7 @@ fn by_name(source: &Source<'_>, refs: &References, name: &str) -> Definition {
     candidates.push(Definition::Function(whole.clone()));
     candidates.push(Definition::Chart(whole.clone()));
     candidates.push(Definition::Plant(whole.clone()));
+    candidates.push(Definition::Type(whole.clone()));
     let first = Definition::Variable { chart: None, name: whole };
     if refs.declaration(&first).is_some() {
         return first;
@@ -175,6 +176,8 @@ fn renamed(definition: &Definition, to: &str) -> Definition {
         Definition::Action { chart, .. } => Definition::Action { chart, name: to },
         Definition::Section { chart, .. } => Definition::Section { chart, name: to },
         Definition::Function(_) => Definition::Function(to),
+        Definition::Type(_) => Definition::Type(to),
+        Definition::Member { of, .. } => Definition::Member { of, name: to },
         Definition::Transition { chart, .. } => Definition::Transition { chart, label: to },
         Definition::Plant(_) => Definition::Plant(to),
         Definition::PlantItem { plant, .. } => Definition::PlantItem { plant, name: to },
@@ -191,6 +194,8 @@ fn there_already(definition: &Definition, to: &str) -> Said {
         Definition::Action { .. } => say!("there is an action `{to}` already"),
         Definition::Section { .. } => say!("there is a section `{to}` already"),
         Definition::Function(_) => say!("there is a function `{to}` already"),
+        Definition::Type(_) => say!("there is a type `{to}` already"),
+        Definition::Member { of, .. } => say!("there is a member `{to}` of `{of}` already"),
         Definition::Transition { .. } => say!("there is a label `{to}` already"),
         Definition::Plant(_) => say!("there is a plant `{to}` already"),
         Definition::PlantItem { .. } => say!("there is a state of the plant `{to}` already"),
@@ -207,6 +212,8 @@ fn none_such(definition: &Definition) -> Said {
         Definition::Action { .. } => say!("there is no action with this name"),
         Definition::Section { .. } => say!("there is no section with this name"),
         Definition::Function(_) => say!("there is no function with this name"),
+        Definition::Type(_) => say!("there is no type with this name"),
+        Definition::Member { .. } => say!("there is no member with this name"),
         Definition::Transition { .. } => say!("there is no label with this name"),
         Definition::Plant(_) => say!("there is no plant with this name"),
         Definition::PlantItem { .. } => say!("there is no state of the plant with this name"),
@@ -320,7 +327,7 @@ fn judge(
     Ok(())
 }
 
-/// The definition of a part under the new name of the chart or plant that contains it.
+/// The definition of a part under the new name of the chart, type or plant that contains it.
 #[inline(never)]
 fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
     let mut d = d.clone();
@@ -342,6 +349,9 @@ fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
         (Definition::Plant(a), Definition::Plant(b), Definition::PlantItem { plant, .. }) if plant == a => {
             plant.clone_from(b);
         }
+        (Definition::Type(a), Definition::Type(b), Definition::Member { of, .. }) if of == a => {
+            of.clone_from(b)
+        }
         _ => {}
     }
     d
@@ -359,11 +369,12 @@ fn shifted(splices: &[Splice], at: Span) -> usize {
 
 pub(super) fn last_name(definition: &Definition) -> &str {
     match definition {
-        Definition::Chart(n) | Definition::Function(n) | Definition::Plant(n) => n,
+        Definition::Chart(n) | Definition::Function(n) | Definition::Type(n) | Definition::Plant(n) => n,
         Definition::Step { name, .. }
         | Definition::Variable { name, .. }
         | Definition::Action { name, .. }
         | Definition::Section { name, .. }
+        | Definition::Member { name, .. }
         | Definition::PlantItem { name, .. } => name,
         Definition::Transition { label, .. } => label,
     }

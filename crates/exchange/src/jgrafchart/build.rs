@@ -366,6 +366,7 @@ fn declaration(var: &Var, report: &Report) -> VarDecl {
         kind: var.kind,
         names: vec![Name::new(writable(&var.name.text), name_at)],
         array: None,
+        of: None,
         ty: var.ty,
         init: var.init.as_ref().map(|v| literal(v, at)).or_else(|| constant_zero(var, at)),
         address: var.channel.as_ref().map(|c| Name::new(writable(c.text.trim()), report.span(&c.at))),

@@ -67,6 +67,7 @@ impl<'a> Builder<'_, 'a> {
                 kind,
                 names: vec![Name::new(self.names.var(number), at)],
                 array: None,
+                of: None,
                 ty: var.ty,
                 init: None,
                 address: None,

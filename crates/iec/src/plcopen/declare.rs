@@ -122,6 +122,7 @@ fn declaration(
         kind,
         names: vec![name],
         array: None,
+        of: None,
         ty,
         init,
         address: address.filter(|_| kind != VarKind::Const),

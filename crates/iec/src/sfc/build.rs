@@ -412,6 +412,7 @@ fn enumeration(name: &Name, number: i128) -> VarDecl {
         kind: VarKind::Const,
         names: vec![name.clone()],
         array: None,
+        of: None,
         ty: Type::Int,
         init: Some(Expr { kind: ExprKind::Literal(Literal::Int(number, None)), at }),
         address: None,

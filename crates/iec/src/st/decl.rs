@@ -323,6 +323,7 @@ impl Maker<'_> {
             kind,
             names: vec![name.clone()],
             array: None,
+            of: None,
             ty,
             init: value,
             address: self.address.clone().filter(|_| kind != VarKind::Const),

@@ -63,6 +63,8 @@ pub const FILE: &[Word] = &[
     Word::reserved("action", ["a named action", "une action nommée", "uma ação com nome"]),
     SECTION,
     Word::reserved("function", ["a function", "une fonction", "uma função"]),
+    Word::reserved("function", ["a function block", "un bloc fonctionnel", "um bloco funcional"]).then(" block"),
+    Word::free("struct", ["a structure", "une structure", "uma estrutura"]),
     PRE,
     POST,
     Word::reserved("plant", ["a model of the process", "un modèle du procédé", "um modelo do processo"]),
@@ -103,6 +105,26 @@ pub const FILE: &[Word] = &[
             "les places d’un grafcet dessiné",
             "os lugares de um grafcet desenhado",
         ],
+    ),
+];
+
+/// Words that a part of a function block can begin with.
+pub const BLOCK: &[Word] = &[
+    INPUT,
+    OUTPUT,
+    Word::free(
+        "inout",
+        [
+            "a parameter that stands for a variable of the caller",
+            "un paramètre qui représente une variable de l’appelant",
+            "um parâmetro que representa uma variável de quem chama",
+        ],
+    ),
+    Word::reserved("var", ["an internal variable", "une variable interne", "uma variável interna"]),
+    Word::reserved("const", ["a constant", "une constante", "uma constante"]),
+    Word::free(
+        "body",
+        ["the statements of a call", "les instructions d’un appel", "as instruções de uma chamada"],
     ),
 ];
 

@@ -66,6 +66,7 @@ pub const CLAUSES: &[Word] = &[
             "o período de um grafcet ou das chegadas",
         ],
     ),
+    Word::free("block", ["a function block", "un bloc fonctionnel", "um bloco funcional"]),
     Word::free(
         "section",
         ["the receptivity as a section", "la réceptivité en section", "a recetividade numa secção"],

@@ -12,7 +12,7 @@ mod go_on;
 mod row;
 mod values;
 
-pub use begin::{ACTION, CHART, FILE, LAYOUT, PLANT, TEST};
+pub use begin::{ACTION, BLOCK, CHART, FILE, LAYOUT, PLANT, TEST};
 pub use go_on::{CLAUSES, STATEMENT};
 pub use row::{Told, Word};
 pub use values::{OPERATOR, PART, STEP, TYPE, VALUE, of_qualifier, of_switch, of_type};
@@ -20,13 +20,14 @@ pub use values::{OPERATOR, PART, STEP, TYPE, VALUE, of_qualifier, of_switch, of_
 use crate::{Language, ProfileName, Qualifier, StandardFunction, Type};
 
 /// The kinds of places, each with its words.
-pub const PLACES: [(&str, &[Word]); 13] = [
+pub const PLACES: [(&str, &[Word]); 14] = [
     ("file", FILE),
     ("chart", CHART),
     ("action", ACTION),
     ("plant", PLANT),
     ("test", TEST),
     ("layout", LAYOUT),
+    ("block", BLOCK),
     ("clauses", CLAUSES),
     ("statement", STATEMENT),
     ("operator", OPERATOR),

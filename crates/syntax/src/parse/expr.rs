@@ -15,9 +15,9 @@ use g7_model::{
 const MOST_HIGH: u32 = 500;
 
 /// An expression with the height of its tree.
-struct Tree {
-    expr: Expr,
-    height: u32,
+pub(super) struct Tree {
+    pub(super) expr: Expr,
+    pub(super) height: u32,
 }
 
 impl Parser<'_> {
@@ -59,7 +59,7 @@ impl Parser<'_> {
         }
     }
 
-    fn tree(&mut self, least: u8) -> Tree {
+    pub(super) fn tree(&mut self, least: u8) -> Tree {
         let left = self.unary();
         let tree = self.operators(left, least);
         // Nothing binds less, so it stands behind the whole condition.
@@ -448,13 +448,14 @@ impl Parser<'_> {
         while self.eat(Tok::PathDot)
             || names.len() == 1 && self.prev.kind == Tok::RBracket && self.dot_of_member()
         {
-            names.push(self.member());
+            let member = self.member();
+            names.push(self.called_instance(member));
         }
         Path { names }
     }
 
     /// The name after a dot: every word is allowed there.
-    fn member(&mut self) -> Name {
+    pub(super) fn member(&mut self) -> Name {
         if self.at(Tok::Word) {
             let token = self.bump();
             return Name::new(self.slice(token), self.span_of(token));
@@ -471,34 +472,6 @@ impl Parser<'_> {
     pub(super) fn peek_call(&mut self) -> bool {
         let next = self.peek();
         next.kind == Tok::LParen && !next.newline
-    }
-
-    /// The index behind the name of an array, and the number of a bit behind that, if they stand here.
-    pub(super) fn variable_of(&mut self, path: Path) -> ExprKind {
-        self.element_of(path).0
-    }
-
-    /// The same with the height of the highest index.
-    fn element_of(&mut self, path: Path) -> (ExprKind, u32) {
-        let close = self.cur.start == self.prev.end;
-        if !self.at(Tok::LBracket) || !close || !self.enter() {
-            return (ExprKind::Path(path), 0);
-        }
-        let open = self.here();
-        self.bump();
-        let (mut index, mut height) = (Vec::new(), 0);
-        loop {
-            let tree = self.tree(1);
-            height = height.max(tree.height);
-            index.push(tree.expr);
-            if !self.eat(Tok::Comma) {
-                break;
-            }
-        }
-        self.close(Tok::RBracket, say!("`]`"), open);
-        self.leave();
-        let member = self.dot_of_member().then(|| Box::new(self.member()));
-        (ExprKind::Element(Box::new(path), index, member), height)
     }
 
     fn path_or_call(&mut self) -> Tree {

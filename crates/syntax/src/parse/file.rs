@@ -52,6 +52,8 @@ impl Parser<'_> {
             "target" => self.line(Parser::target),
             "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
             "instance" => Item::Instance(self.line(Parser::instance)),
+            "struct" => Item::Composed(self.structure()),
+            "function" if self.at_block() => Item::Composed(self.function_block()),
             "action" => Item::Action(self.line(Parser::named_action)),
             "transition" => Item::Section(self.line(Parser::section)),
             "function" => Item::Function(self.line(Parser::function)),

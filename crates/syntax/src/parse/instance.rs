@@ -46,14 +46,25 @@ impl Parser<'_> {
         self.numbered(name, &text, tokens)
     }
 
-    /// Reads the index behind the first name of a path, if a member follows it: `Axis[3].X12`. Otherwise the index is
-    /// that of an array, and is left.
+    /// Reads the index behind a name of a path, if a member or the arguments of a call follow it: `Axis[3].X12`,
+    /// `d[3](x := a)`. Otherwise the index is that of an array, and is left.
     pub(super) fn chart_of_path(&mut self, name: Name) -> Name {
         if !self.at(Tok::LBracket) || self.cur.start != self.prev.end {
             return name;
         }
         match self.index_ahead() {
             Some((text, tokens)) if self.member_behind(tokens) => self.numbered(name, &text, tokens),
+            _ => name,
+        }
+    }
+
+    /// Reads the index behind the name of a member, if the arguments of a call follow it: `a.d[3](x := b)`.
+    pub(super) fn called_instance(&mut self, name: Name) -> Name {
+        if !self.at(Tok::LBracket) || self.cur.start != self.prev.end {
+            return name;
+        }
+        match self.index_ahead() {
+            Some((text, tokens)) if self.called_behind(tokens) => self.numbered(name, &text, tokens),
             _ => name,
         }
     }
@@ -91,14 +102,25 @@ impl Parser<'_> {
         (token.kind == Tok::Int).then(|| self.slice(token).parse().ok()).flatten()
     }
 
-    /// True if `.name` follows so many tokens ahead; a number there is that of a bit.
+    /// True if `.name` or `(` follows so many tokens ahead; a number there is that of a bit.
     fn member_behind(&self, tokens: u32) -> bool {
+        let [close, dot, name] = self.behind_index(tokens);
+        called(close, dot) || is_member(close, dot, name)
+    }
+
+    /// True if `(` follows so many tokens ahead.
+    fn called_behind(&self, tokens: u32) -> bool {
+        let [close, open, _] = self.behind_index(tokens);
+        called(close, open)
+    }
+
+    /// The bracket that closes an index of so many tokens, and the two tokens behind it.
+    fn behind_index(&self, tokens: u32) -> [Token; 3] {
         let mut ahead = self.lexer.ahead(self.cur);
         // The bracket that opens is in hand already.
         let mut close = self.cur;
         (1..tokens).for_each(|_| close = ahead.token());
-        let dot = ahead.token();
-        is_member(close, dot, ahead.token())
+        [close, ahead.token(), ahead.token()]
     }
 
     /// Reads the dot between an index and the name of a member, `m[i].b`. Returns false, and reads nothing, if there
@@ -116,6 +138,11 @@ impl Parser<'_> {
         }
         member
     }
+}
+
+/// True if the arguments of a call stand close behind an index.
+fn called(close: Token, open: Token) -> bool {
+    open.kind == Tok::LParen && open.start == close.end
 }
 
 /// True if a dot joins a name to an index: without a blank on either side. Elsewhere a `.` behind a bracket is AND.

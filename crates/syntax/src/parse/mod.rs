@@ -6,6 +6,8 @@
 
 mod action;
 mod chart;
+mod composed;
+mod element;
 mod expr;
 mod extent;
 mod file;
@@ -458,6 +460,7 @@ impl<'a> Parser<'a> {
             "test" => self.peek().kind == Tok::Comment,
             "prove" => self.peek().kind == Tok::Word,
             "instance" => self.at_instance(),
+            "struct" => self.at_structure(),
             _ => false,
         }
     }

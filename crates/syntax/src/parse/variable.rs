@@ -1,5 +1,6 @@
 //! Declarations of variables, and types.
 
+use super::composed::usual_type;
 use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
 use crate::words::{self, St};
@@ -21,9 +22,19 @@ impl Parser<'_> {
     /// Reads a declaration; its first word is the current token.
     pub(super) fn variable(&mut self, kind: VarKind) -> VarDecl {
         let start = self.bump().start;
+        self.declaration(kind, start)
+    }
+
+    /// Reads a declaration whose word is read, or that has none.
+    pub(super) fn declaration(&mut self, kind: VarKind, start: u32) -> VarDecl {
         let names = self.names(say!("the name of a variable"));
         let array = self.array();
-        let ty = if array.is_some() { self.ty() } else { self.typed() };
+        let of = self.named_type(array.is_some());
+        let ty = match (&of, &array) {
+            (Some(_), _) => Type::Bool,
+            (None, Some(_)) => self.ty(),
+            (None, None) => self.typed(),
+        };
         let at = self.since(start).into();
         let init = if array.is_some() { self.values() } else { self.initial_value() };
         let mut decl = VarDecl {
@@ -31,6 +42,7 @@ impl Parser<'_> {
             names,
             array,
             ty,
+            of,
             init,
             address: None,
             inverted: false,
@@ -55,7 +67,7 @@ impl Parser<'_> {
         }
         let token = self.behind_line_end().unwrap_or(self.cur);
         let word = self.slice(token);
-        // In a chart, a step may have the name of one of these words.
+        // In a chart, a step may have the name of one of these words; in a structure, a member.
         if !matches!(word, "at" | "inverted" | "retain" | "safe") || self.before_transition(token) {
             return false;
         }
@@ -84,7 +96,7 @@ impl Parser<'_> {
     }
 
     fn before_transition(&self, token: Token) -> bool {
-        matches!(self.lexer.ahead(token).token().kind, Tok::Arrow | Tok::Colon | Tok::Output)
+        matches!(self.lexer.ahead(token).token().kind, Tok::Arrow | Tok::Colon | Tok::Comma | Tok::Output)
     }
 
     /// `%I0.0`, a number, a name or a text.
@@ -160,13 +172,18 @@ impl Parser<'_> {
             return None;
         }
         self.assign_sign();
-        let open = self.here();
         if !self.at(Tok::LBracket) {
             let value = self.expr();
             let at = value.at.0;
             self.slip(at, say!("the values of an array stand in brackets"), say!("write `[1, 2, 4(0)]`"));
             return Some(value);
         }
+        Some(self.list())
+    }
+
+    /// `[1, 2, 4(0)]`; the bracket is in hand.
+    pub(super) fn list(&mut self) -> Expr {
+        let open = self.here();
         self.bump();
         let mut values = Vec::new();
         loop {
@@ -176,17 +193,21 @@ impl Parser<'_> {
             }
         }
         self.close(Tok::RBracket, say!("`]`"), open);
-        Some(Expr { kind: ExprKind::List(values), at: self.since(open.start).into() })
+        Expr { kind: ExprKind::List(values), at: self.since(open.start).into() }
     }
 
     /// `4(0)`, or one value.
     fn repeated(&mut self) -> (u32, Expr) {
         let next = self.peek();
         if !self.at(Tok::Int) || next.kind != Tok::LParen || next.newline {
-            return (1, self.expr());
+            return (1, self.value_or_fields());
         }
         let count = self.integer_if(u64::from(u32::MAX)).and_then(|n| u32::try_from(n).ok());
-        (count.unwrap_or(1), self.expr_in_parens())
+        let open = self.here();
+        self.bump();
+        let value = self.value_or_fields();
+        self.close(Tok::RParen, say!("`)`"), open);
+        (count.unwrap_or(1), value)
     }
 
     /// `:= expr`, if it stands here; `=` is taken for it.
@@ -195,7 +216,7 @@ impl Parser<'_> {
             return None;
         }
         self.assign_sign();
-        let value = self.expr();
+        let value = self.value_or_fields();
         self.decimal_comma();
         Some(value)
     }
@@ -253,15 +274,7 @@ impl Parser<'_> {
         let names: Vec<&str> = Type::names().collect();
         let upper = word.to_ascii_uppercase();
         let composed = matches!(&*upper, "ARRAY" | "STRUCT");
-        let other = match &*upper {
-            "INTEGER" | "SHORT" => Some(Type::Int),
-            "BOOLEAN" | "BIT" => Some(Type::Bool),
-            "LONG" => Some(Type::Dint),
-            "FLOAT" => Some(Type::Real),
-            "DOUBLE" => Some(Type::Lreal),
-            "CHAR" | "WSTRING" | "TEXT" => Some(Type::STRING),
-            _ => None,
-        };
+        let other = usual_type(word);
         self.report(at, || {
             let problem = Problem::new(&codes::UNKNOWN_WORD, at, say!("there is no type `{word}`"));
             if let Some(other) = other {
@@ -269,7 +282,7 @@ impl Parser<'_> {
             }
             problem.help(match (&*upper, words::similar(word, &names)) {
                 ("ARRAY", _) => say!("an array is declared in a chart or in the file"),
-                ("STRUCT", _) => say!("declare one variable for each element"),
+                ("STRUCT", _) => say!("a structure has a name: `struct Motor {{ speed : REAL }}`"),
                 ("DATE" | "TOD" | "DT" | "TIME_OF_DAY" | "DATE_AND_TIME" | "LTIME", _) => {
                     say!("the only type of times is TIME")
                 }

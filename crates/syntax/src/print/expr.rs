@@ -57,10 +57,7 @@ impl<'a> Printer<'a> {
                 _ => self.call(path, args),
             },
             ExprKind::Element(path, index, member) => {
-                self.path(path);
-                self.push("[");
-                self.list(index);
-                self.push("]");
+                self.element(path, index);
                 if let Some(member) = member {
                     self.push(".");
                     self.name(&member.text);
@@ -140,15 +137,22 @@ impl<'a> Printer<'a> {
     }
 
     pub(super) fn path(&mut self, path: &Path) {
+        self.names_of_path(&path.names, false);
+    }
+
+    /// Names joined by dots; those of a call can have an index at their end.
+    fn names_of_path(&mut self, names: &[Name], called: bool) {
         let number = |name: &Name| name.text.starts_with(|c: char| c.is_ascii_digit());
-        for (i, name) in path.names.iter().enumerate() {
-            if i > 0 {
-                self.push(".");
-                self.name(&name.text);
-            } else if !number(name) && path.names.get(1).is_some_and(|n| !number(n)) {
+        for (i, name) in names.iter().enumerate() {
+            self.push(if i > 0 { "." } else { "" });
+            let indexed = match names.get(i + 1) {
                 // A number behind the index would be read as that of a bit.
+                Some(next) => i == 0 && !number(next),
+                None => called,
+            };
+            if indexed && !number(name) {
                 self.chart_name(&name.text);
-            } else if number(name) {
+            } else if i == 0 && number(name) {
                 // A bare number would be read as a number, not as a name.
                 self.push(&quote::quote(&name.text, '`'));
             } else {
@@ -158,7 +162,7 @@ impl<'a> Printer<'a> {
     }
 
     pub(super) fn call(&mut self, path: &Path, args: &[Arg]) {
-        self.path(path);
+        self.names_of_path(&path.names, true);
         self.args(args);
     }
 

@@ -36,6 +36,7 @@ impl Printer<'_> {
             Item::Var(v) => self.line(v.at.0, apart, |s| s.variable(v)),
             Item::Chart(c) => self.group(c.at.0, apart, |s| s.chart(c)),
             Item::Instance(i) => self.line(i.at.0, apart, |s| s.instance(i)),
+            Item::Composed(c) => self.group(c.at.0, apart, |s| s.composed(c)),
             Item::Action(a) => self.group(a.at.0, apart, |s| s.named_action(a)),
             Item::Section(x) => self.section_item(x, apart),
             Item::Function(f) => self.group(f.at.0, apart, |s| s.function(f)),
@@ -81,12 +82,20 @@ impl Printer<'_> {
             VarKind::Var => "var ",
             VarKind::Const => "const ",
         });
+        self.declaration(v);
+    }
+
+    /// All of a declaration behind its word.
+    pub(super) fn declaration(&mut self, v: &VarDecl) {
         self.names(&v.names);
         self.push(" : ");
         if let Some(array) = &v.array {
             self.array(array);
         }
-        self.push(&v.ty.to_string());
+        match &v.of {
+            Some(of) => self.name(&of.text),
+            None => self.push(&v.ty.to_string()),
+        }
         self.initial(v.init.as_ref());
         if let Some(address) = &v.address {
             self.push(" at ");
@@ -225,6 +234,7 @@ fn family(item: &Item) -> Family {
         | Item::Action(_)
         | Item::Section(_)
         | Item::Function(_)
+        | Item::Composed(_)
         | Item::Pre(..)
         | Item::Post(..)
         | Item::Plant(_)

@@ -6,6 +6,7 @@
 //! nothing.
 
 mod chart;
+mod composed;
 mod expr;
 mod item;
 pub(crate) mod part;

@@ -1,14 +1,15 @@
 //! Random documents.
 
 use crate::expressions::{
-    args, block, chart_name, direct, duration, element, expr, name, path, simple_stmt, text, ty, values,
+    args, block, chart_name, direct, duration, element, expr, fields, name, path, simple_stmt, text, ty,
+    values,
 };
 use crate::world;
 use g7_model::{
-    Action, ActionKind, Array, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
-    Function, Instance, InstanceNames, Item, Name, NamedAction, Note, Order, Param, Path, Place, Profile,
-    ProfileName, Qualifier, Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch, Target,
-    TargetPlc, Transition, VarDecl, VarKind, Work,
+    Action, ActionKind, Array, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Composed, Document, Expr,
+    ExprKind, Function, Instance, InstanceNames, Item, Name, NamedAction, Note, Order, Param, Path, Place,
+    Profile, ProfileName, Qualifier, Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch,
+    Target, TargetPlc, Transition, Type, VarDecl, VarKind, Work,
 };
 use proptest::prelude::*;
 
@@ -50,12 +51,14 @@ fn variable() -> impl Strategy<Value = VarDecl> {
     let dimensions = prop::collection::vec((expr(), expr()), 1..3);
     let array = dimensions.prop_map(|dimensions| Some(Box::new(Array { dimensions, at: at() })));
     let array = (array, prop::option::of(values()), values());
-    let shape = prop_oneof![3 => scalar.boxed(), 1 => array.boxed()];
-    (kind, names(1..4), ty(), shape, rest).prop_map(
-        |(kind, names, ty, (array, init, value), (address, flag, safe, comment))| VarDecl {
+    let structure = (Just(None), prop::option::of(fields()), fields());
+    let shape = prop_oneof![3 => scalar.boxed(), 1 => array.boxed(), 1 => structure.boxed()];
+    (kind, names(1..4), declared_type(), shape, rest).prop_map(
+        |(kind, names, (ty, of), (array, init, value), (address, flag, safe, comment))| VarDecl {
             kind,
             names,
             array,
+            of,
             ty,
             init: if kind == VarKind::Const { Some(value) } else { init },
             address: address.filter(|_| kind != VarKind::Const),
@@ -63,6 +66,33 @@ fn variable() -> impl Strategy<Value = VarDecl> {
             retain: flag && kind == VarKind::Var,
             safe: safe.filter(|_| kind == VarKind::Output),
             comment,
+            at: at(),
+        },
+    )
+}
+
+/// A type of the language, or the name of one that the file declares.
+fn declared_type() -> impl Strategy<Value = (Type, Option<Box<Name>>)> {
+    let own = name().prop_filter("a type of the language", |n| {
+        g7_iec::constant::type_named(&n.text).is_none() && !n.text.starts_with(|c: char| c.is_ascii_digit())
+    });
+    prop_oneof![4 => ty().prop_map(|ty| (ty, None)), 1 => own.prop_map(|of| (Type::Bool, Some(Box::new(of))))]
+}
+
+fn composed() -> impl Strategy<Value = Composed> {
+    let member = || variable().prop_map(|v| VarDecl { address: None, inverted: false, safe: None, ..v });
+    let of_structure = member().prop_map(|v| VarDecl { kind: VarKind::Var, retain: false, ..v });
+    let inout = member().prop_map(|v| VarDecl { kind: VarKind::Var, retain: false, init: None, ..v });
+    let structure = prop::collection::vec(of_structure, 0..3).prop_map(|members| (members, Vec::new(), None));
+    let block = (prop::collection::vec(member(), 0..3), prop::collection::vec(inout, 0..2), body())
+        .prop_map(|(members, inouts, body)| (members, inouts, Some(body)));
+    (name(), comment(), prop_oneof![structure.boxed(), block.boxed()]).prop_map(
+        |(name, comment, (members, inouts, body))| Composed {
+            name,
+            comment,
+            members,
+            inouts,
+            body,
             at: at(),
         },
     )
@@ -262,6 +292,7 @@ fn item() -> impl Strategy<Value = Item> {
         3 => variable().prop_map(Item::Var),
         4 => chart().prop_map(Item::Chart),
         2 => instance().prop_map(Item::Instance),
+        2 => composed().prop_map(Item::Composed),
         1 => named_action().prop_map(Item::Action),
         1 => section().prop_map(Item::Section),
         1 => function,

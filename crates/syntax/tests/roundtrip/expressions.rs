@@ -181,7 +181,8 @@ pub(crate) fn expr() -> impl Strategy<Value = Expr> {
             2 => (t.clone(), boxed, prop::option::of(t))
                 .prop_map(|(t1, e, t2)| of(ExprKind::Timer { t1, e, t2 })),
             1 => (path(), args(inner.clone())).prop_map(|(p, a)| of(ExprKind::Call(p, a))),
-            1 => element(inner),
+            1 => element(inner.clone()),
+            1 => member(inner),
         ]
     })
 }
@@ -192,6 +193,38 @@ pub(crate) fn element(index: impl Strategy<Value = Expr>) -> impl Strategy<Value
         .prop_map(|n| n.map(|n| Box::new(Name::new(n.to_string(), Span::default()))));
     (path(), prop::collection::vec(index, 1..3), bit)
         .prop_map(|(p, index, bit)| of(ExprKind::Element(Box::new(p), index, bit)))
+}
+
+/// A member of an element: `m[i + 1].t[j].x`. Behind the first name a number or a name alone would be read as the
+/// index of an instance, and a number as a name would be that of a bit.
+fn member(index: impl Strategy<Value = Expr>) -> impl Strategy<Value = Expr> {
+    let plain = || {
+        "[a-z_][a-zA-Z0-9_]{0,5}"
+            .prop_filter("a word of the language", |n| !g7_model::words::reserved().contains(n))
+    };
+    let more = prop::collection::vec((plain(), 0..3_usize), 1..3);
+    (plain(), more, prop::collection::vec(index, 8)).prop_map(|(first, more, index)| {
+        let name = |text: String| Name::new(text, Span::default());
+        let mut used = 2;
+        let mut names = vec![name(format!("{first}[,]"))];
+        let last = more.len() - 1;
+        for (n, (text, slots)) in more.into_iter().enumerate() {
+            used += slots;
+            let slot =
+                if slots > 0 && n < last { format!("[{}]", ",".repeat(slots - 1)) } else { String::new() };
+            names.push(name(format!("{text}{slot}")));
+        }
+        let index = index.into_iter().take(used).collect();
+        of(ExprKind::Element(Box::new(Path { names }), index, None))
+    })
+}
+
+/// The values of a structure.
+pub(crate) fn fields() -> impl Strategy<Value = Expr> {
+    let value = prop_oneof![3 => expr().boxed(), 1 => values().boxed()];
+    let field = (name(), value).prop_map(|(name, value)| Arg { name: Some(name), output: false, value });
+    prop::collection::vec(field, 1..3)
+        .prop_map(|fields| of(ExprKind::Call(Path { names: Vec::new() }, fields)))
 }
 
 /// The values of an array.

@@ -117,7 +117,12 @@ impl Writer<'_> {
                     let what = say!("the time of a scan is left out: it belongs to the task MAST there");
                     self.speech.say(&g7_model::codes::LEFT_OUT, *at, what);
                 }
-                Item::Profile(_) | Item::Var(_) | Item::Chart(_) | Item::Instance(_) | Item::Layout(_) => {}
+                Item::Profile(_)
+                | Item::Var(_)
+                | Item::Chart(_)
+                | Item::Instance(_)
+                | Item::Composed(_)
+                | Item::Layout(_) => {}
             }
         }
         let ident =

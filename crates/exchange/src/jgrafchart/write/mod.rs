@@ -160,7 +160,12 @@ impl<'d> Writer<'d> {
     /// Writes items other than charts and variables.
     fn item(&mut self, item: &Item) {
         match item {
-            Item::Var(_) | Item::Chart(_) | Item::Instance(_) | Item::Layout(_) | Item::Pre(..) => {}
+            Item::Var(_)
+            | Item::Chart(_)
+            | Item::Instance(_)
+            | Item::Composed(_)
+            | Item::Layout(_)
+            | Item::Pre(..) => {}
             Item::Profile(p) if p.name == ProfileName::Jgrafchart && p.switches.is_empty() => {}
             Item::Profile(p) => {
                 let what = say!(

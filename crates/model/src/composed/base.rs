@@ -1,0 +1,207 @@
+//! The types of a document, and how a variable or a part of one is described while names are replaced.
+
+use std::collections::{HashMap, HashSet};
+
+use crate::{
+    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Problem, Said, Span, Type, VarDecl,
+    VarKind,
+};
+
+/// The variables of all members together, and the statements of all calls together.
+pub(super) const MOST: usize = 1 << 16;
+
+/// The variables that are declared in one place.
+pub(super) type Scope<'d> = HashMap<&'d str, &'d VarDecl>;
+
+/// The values that the variable of a loop goes through.
+pub(super) struct Loop {
+    pub(super) name: Box<str>,
+    pub(super) least: i128,
+    pub(super) most: i128,
+}
+
+/// The types of a document, and the variables that can have them.
+pub struct Composition<'d> {
+    pub(super) types: HashMap<&'d str, &'d Composed>,
+    pub(super) file: Scope<'d>,
+    pub(super) charts: HashMap<&'d str, Scope<'d>>,
+    /// The types that cannot be; that is reported.
+    pub(super) wrong: HashSet<&'d str>,
+    /// The types of which there are variables.
+    pub(super) used: HashSet<&'d str>,
+    /// How many variables and statements can still be made.
+    pub(super) room: usize,
+    pub(super) full: bool,
+    /// The loops round the statement in hand.
+    pub(super) loops: Vec<Loop>,
+    pub(super) problems: Vec<Problem>,
+}
+
+/// A name of a path with the indexes behind it.
+#[derive(Clone, Debug)]
+pub(super) struct Segment {
+    pub(super) name: Name,
+    pub(super) index: Vec<Expr>,
+}
+
+/// A variable, or a part of one.
+#[derive(Clone)]
+pub(super) struct Spot<'d> {
+    /// The chart that the path names before it.
+    pub(super) chart: Option<Name>,
+    /// The name so far, with `[]` for indexes.
+    pub(super) text: String,
+    /// These indexes.
+    pub(super) index: Vec<Expr>,
+    /// The indexes behind the name.
+    pub(super) own: Vec<Expr>,
+    pub(super) decl: &'d VarDecl,
+    pub(super) of: Option<&'d Composed>,
+    /// True for what only the function block itself can write.
+    pub(super) inner: bool,
+    /// The names behind a variable: a bit, or a member of a function block of the standard.
+    pub(super) tail: Vec<Name>,
+    /// True if the indexes that are left out mean whole arrays.
+    pub(super) whole: bool,
+    pub(super) at: Span,
+}
+
+impl<'d> Composition<'d> {
+    /// The types of a document; None if it has none and no variable names one.
+    pub fn of(document: &'d Document) -> Option<Composition<'d>> {
+        let vars = |c: &'d Chart| {
+            c.items.iter().filter_map(|i| if let ChartItem::Var(v) = i { Some(v) } else { None })
+        };
+        let concerned = |item: &'d Item| match item {
+            Item::Composed(_) => true,
+            Item::Var(v) => is_composed(v),
+            Item::Chart(c) => vars(c).any(is_composed),
+            _ => false,
+        };
+        if !document.items.iter().any(concerned) {
+            return None;
+        }
+        let mut made = Composition {
+            types: HashMap::new(),
+            file: HashMap::new(),
+            charts: HashMap::new(),
+            wrong: HashSet::new(),
+            used: HashSet::new(),
+            room: MOST,
+            full: false,
+            loops: Vec::new(),
+            problems: Vec::new(),
+        };
+        for item in &document.items {
+            match item {
+                Item::Var(v) => declare(&mut made.file, v),
+                Item::Chart(c) => {
+                    let scope = made.charts.entry(&*c.name.text).or_default();
+                    vars(c).for_each(|v| declare(scope, v));
+                }
+                _ => {}
+            }
+        }
+        made.types(document);
+        Some(made)
+    }
+
+    /// An expression that stands outside of all charts, with plain names.
+    pub fn query(&mut self, e: &Expr) -> (Expr, Vec<Problem>) {
+        let mut e = e.clone();
+        self.expr(&mut e, &Env::outside());
+        (e, std::mem::take(&mut self.problems))
+    }
+
+    /// The one type of a variable, if it has one that the file declares.
+    pub(super) fn type_of(&self, v: &VarDecl) -> Option<&'d Composed> {
+        self.types.get(&*v.of.as_ref()?.text).copied()
+    }
+
+    pub(super) fn report<T>(&mut self, problem: Problem) -> Option<T> {
+        self.problems.push(problem);
+        None
+    }
+
+    /// Takes room for so many variables or statements; false if there is no more.
+    pub(super) fn takes(&mut self, count: usize, at: Span) -> bool {
+        match self.room.checked_sub(count) {
+            Some(left) => self.room = left,
+            None if self.full => {}
+            None => {
+                (self.full, self.room) = (true, 0);
+                self.too_large(at);
+            }
+        }
+        !self.full
+    }
+}
+
+/// True for a variable of a type that the file declares, and for one with the values of such a type.
+fn is_composed(v: &VarDecl) -> bool {
+    v.of.is_some() || v.init.as_ref().is_some_and(has_fields)
+}
+
+fn declare<'d>(scope: &mut Scope<'d>, v: &'d VarDecl) {
+    for name in &v.names {
+        scope.entry(&*name.text).or_insert(v);
+    }
+}
+
+/// True for the members of a function block that each instance has for itself: an index of an array of instances is
+/// part of their names.
+pub(super) fn is_local(of: &Composed, member: &VarDecl) -> bool {
+    let block = member.of.is_none() && matches!(member.ty, Type::Fb(_));
+    block || of.body.is_some() && matches!(member.kind, VarKind::Var | VarKind::Const)
+}
+
+/// The names that an expression or statement can see.
+pub(super) enum Env<'e, 'd> {
+    /// Those of a chart, or of the file alone.
+    Outer {
+        chart: Option<&'e str>,
+        /// Local variables, which hide others.
+        locals: Vec<Box<str>>,
+        /// Why no function block can be called here.
+        uncallable: Option<Said>,
+    },
+    /// Those of a function block.
+    Block { instance: Spot<'d>, inouts: HashMap<&'d str, Vec<Segment>>, outer: &'e Env<'e, 'd> },
+}
+
+impl<'e, 'd> Env<'e, 'd> {
+    pub(super) fn outside() -> Env<'e, 'd> {
+        Env::Outer { chart: None, locals: Vec::new(), uncallable: None }
+    }
+
+    /// The chart round it all, and the local variables there.
+    pub(super) fn root(&self) -> (Option<&str>, &[Box<str>]) {
+        match self {
+            Env::Outer { chart, locals, .. } => (*chart, locals),
+            Env::Block { outer, .. } => outer.root(),
+        }
+    }
+
+    pub(super) fn uncallable(&self) -> Option<&Said> {
+        match self {
+            Env::Outer { uncallable, .. } => uncallable.as_ref(),
+            Env::Block { outer, .. } => outer.uncallable(),
+        }
+    }
+}
+
+/// From the first to the last of some names.
+pub(super) fn across(names: &[Name]) -> Span {
+    match (names.first(), names.last()) {
+        (Some(first), Some(last)) => first.at.0.to(last.at.0),
+        _ => Span::default(),
+    }
+}
+/// True if an initial value is that of a structure, or a list of such.
+pub(super) fn has_fields(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Call(path, _) => path.names.is_empty(),
+        ExprKind::List(values) => values.iter().any(|(_, e)| has_fields(e)),
+        _ => false,
+    }
+}

@@ -1,0 +1,130 @@
+//! The table of types: each name once, and no type within itself.
+
+use std::collections::HashMap;
+
+use super::base::{Composition, MOST};
+use crate::{Composed, Document, Item, Name, Problem, Span, Type, VarDecl, codes, say};
+
+/// How deep types can stand in each other.
+const DEEP: usize = 64;
+
+impl<'d> Composition<'d> {
+    /// Collects the types. A type that is wrong as such has no members for what follows.
+    pub(super) fn types(&mut self, document: &'d Document) {
+        let composed =
+            || document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None });
+        for c in composed().filter(|c| !c.name.text.is_empty()) {
+            let name = &c.name.text;
+            if Type::named(&name.to_ascii_uppercase()).is_some() {
+                let what = say!("`{name}` is a type of the language");
+                let problem = Problem::new(&codes::DEFINED_TWICE, c.name.at.0, what);
+                self.problems.push(problem.help(say!("choose another name")));
+                continue;
+            }
+            if let Some(first) = self.types.get(&**name).map(|t| t.name.at.0) {
+                self.twice(&c.name, first);
+                continue;
+            }
+            self.members(c);
+            self.types.insert(name, c);
+        }
+        let mut depths = HashMap::new();
+        for c in composed() {
+            let mut on_the_way = Vec::new();
+            self.depth(c, &mut on_the_way, &mut depths);
+        }
+        let wrong = |name: &&str| depths.get(name).is_none_or(|d| *d >= DEEP);
+        self.wrong = self.types.keys().copied().filter(wrong).collect();
+        self.types.retain(|name, _| !wrong(name));
+    }
+
+    fn twice(&mut self, name: &Name, first: Span) {
+        let problem =
+            Problem::new(&codes::DEFINED_TWICE, name.at.0, say!("`{}` is defined twice", name.text));
+        self.problems.push(problem.related(first, say!("defined here first")));
+    }
+
+    fn members(&mut self, c: &'d Composed) {
+        let mut seen: HashMap<&str, Span> = HashMap::new();
+        let locals = c.body.iter().flat_map(|b| &b.block().locals).flat_map(|l| &l.names);
+        let members = c.members.iter().chain(&c.inouts).flat_map(|m| &m.names);
+        for name in members.chain(locals).filter(|n| !n.text.is_empty()) {
+            match seen.get(&*name.text).copied() {
+                Some(first) => self.twice(name, first),
+                None => _ = seen.insert(&name.text, name.at.0),
+            }
+        }
+    }
+
+    /// How deep the types stand in each other below this one; reports those that stand in themselves.
+    fn depth(
+        &mut self,
+        c: &'d Composed,
+        way: &mut Vec<&'d Composed>,
+        depths: &mut HashMap<&'d str, usize>,
+    ) -> usize {
+        let name = &*c.name.text;
+        if let Some(depth) = depths.get(name) {
+            return *depth;
+        }
+        if let Some(place) = way.iter().position(|on| *on.name.text == *name) {
+            let what = say!("`{name}` has a variable of its own type");
+            let mut problem = Problem::new(&codes::RECURSION, c.name.at.0, what);
+            for on in way.iter().skip(place + 1) {
+                problem = problem.related(on.name.at.0, say!("by way of `{}`", on.name.text));
+            }
+            self.problems.push(problem.help(say!(
+                "a variable of a type holds all of its members, so none can be of the type itself"
+            )));
+            return DEEP;
+        }
+        if way.len() >= DEEP {
+            let what = say!("types stand in each other at most {DEEP} deep");
+            self.problems.push(Problem::new(&codes::TOO_DEEP, c.name.at.0, what));
+            return DEEP;
+        }
+        way.push(c);
+        let of: Vec<&VarDecl> = c.members.iter().filter(|m| m.of.is_some()).collect();
+        let inner: Vec<&'d Composed> = of.iter().filter_map(|m| self.type_of(m)).collect();
+        let deepest = inner.into_iter().map(|t| self.depth(t, way, depths)).max();
+        way.pop();
+        let depth = deepest.map_or(0, |d| d + 1).min(DEEP);
+        depths.insert(name, depth);
+        depth
+    }
+
+    /// Reports a name that is no type.
+    pub(super) fn unknown_type(&mut self, of: &Name) {
+        let name = &of.text;
+        if name.is_empty() {
+            return; // The name could not be read; the parser has reported it.
+        }
+        let problem = Problem::new(&codes::UNKNOWN_WORD, of.at.0, say!("there is no type `{name}`"));
+        let mut names: Vec<&str> = Type::names().collect();
+        names.extend(self.types.keys().copied());
+        let near = crate::similar(name, &names).map(str::to_owned);
+        self.problems.push(match near {
+            Some(near) => problem.meant(&near),
+            None => problem.help(say!(
+                "types are those of IEC 61131-3, and those that `struct` and `function block` declare"
+            )),
+        });
+    }
+
+    /// True if a variable of the type holds a function block, its own or one of the standard.
+    pub(super) fn holds_block(&self, c: &Composed) -> bool {
+        let held = |m: &VarDecl| match self.type_of(m) {
+            Some(t) => self.holds_block(t),
+            None => m.of.is_none() && matches!(m.ty, Type::Fb(_)),
+        };
+        c.body.is_some() || c.members.iter().any(held)
+    }
+
+    pub(super) fn too_large(&mut self, at: Span) {
+        let most = MOST;
+        let what = say!(
+            "the members of all variables and the statements of all calls together are more than {most}"
+        );
+        self.problems.push(Problem::new(&codes::TOO_LARGE, at, what));
+    }
+}

@@ -1,0 +1,278 @@
+//! The walk through a document, in which declarations, statements and expressions are replaced.
+
+use super::base::{Composition, Env};
+use super::paths::one_name;
+use crate::{
+    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Path, Problem,
+    PropertyKind, Said, Stmt, StmtKind, Target, Work, codes, say,
+};
+
+impl<'d> Composition<'d> {
+    /// The document with plain variables, and the problems of its types and calls.
+    pub(super) fn document(mut self, document: &'d Document) -> (Document, Vec<Problem>) {
+        let mut items = Vec::new();
+        for item in &document.items {
+            self.item(item, &mut items);
+        }
+        self.unused(document);
+        (Document { items, notes: document.notes.clone() }, self.problems)
+    }
+
+    fn item(&mut self, item: &'d Item, items: &mut Vec<Item>) {
+        let outside = Env::outside();
+        match item {
+            Item::Composed(_) => {}
+            Item::Var(v) => items.extend(self.declared(v.clone(), &outside).into_iter().map(Item::Var)),
+            Item::Chart(c) => items.push(Item::Chart(self.chart(c))),
+            other => {
+                let mut own = other.clone();
+                match &mut own {
+                    Item::Action(a) => self.body_of(&mut a.body, None),
+                    Item::Section(s) => self.block(&mut s.body, None, Some(say!("a transition section"))),
+                    Item::Pre(body, _) | Item::Post(body, _) => self.body_of(body, None),
+                    Item::Prove(p) => self.claims(&mut p.kind),
+                    _ => {}
+                }
+                items.push(own);
+            }
+        }
+    }
+
+    fn chart(&mut self, chart: &'d Chart) -> Chart {
+        let name = &*chart.name.text;
+        let mut items = Vec::new();
+        for item in &chart.items {
+            if let ChartItem::Var(v) = item {
+                let declared = self.declared(v.clone(), &in_chart(Some(name), Vec::new(), None));
+                items.extend(declared.into_iter().map(ChartItem::Var));
+                continue;
+            }
+            let mut own = item.clone();
+            match &mut own {
+                ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, name)),
+                ChartItem::Transition(t) => {
+                    self.expr(&mut t.receptivity, &in_chart(Some(name), Vec::new(), None));
+                    t.on_clearing.iter_mut().for_each(|b| self.block(b, Some(name), None));
+                }
+                ChartItem::Pre(body, _) | ChartItem::Post(body, _) => self.body_of(body, Some(name)),
+                ChartItem::Action(a) => self.body_of(&mut a.body, Some(name)),
+                ChartItem::Section(s) => {
+                    self.block(&mut s.body, Some(name), Some(say!("a transition section")))
+                }
+                ChartItem::Var(_) => {}
+            }
+            items.push(own);
+        }
+        Chart {
+            kind: chart.kind,
+            name: chart.name.clone(),
+            params: chart.params.clone(),
+            comment: chart.comment.clone(),
+            every: chart.every,
+            items,
+            at: chart.at,
+        }
+    }
+
+    fn claims(&mut self, kind: &mut PropertyKind) {
+        let env = Env::outside();
+        let claims: Vec<&mut Expr> = match kind {
+            PropertyKind::Always(e)
+            | PropertyKind::Never(e)
+            | PropertyKind::Reachable(e)
+            | PropertyKind::Assume(e) => {
+                vec![e]
+            }
+            PropertyKind::After(a, _, b) | PropertyKind::LeadsTo(a, b) => vec![a, b],
+            PropertyKind::Until(a, b, e) | PropertyKind::Between(a, b, e) => vec![a, b, e],
+            PropertyKind::AtMost(_, list) => list.iter_mut().collect(),
+        };
+        claims.into_iter().for_each(|e| self.expr(e, &env));
+    }
+
+    fn action(&mut self, action: &mut Action, chart: &str) {
+        let env = in_chart(Some(chart), Vec::new(), None);
+        match &mut action.kind {
+            ActionKind::Qualified { time, target, condition, .. } => {
+                time.iter_mut().chain(condition).for_each(|e| self.expr(e, &env));
+                self.action_target(target, action.at.0, chart);
+            }
+            ActionKind::OnEvent { event, work } => {
+                self.expr(event, &env);
+                self.work(work, chart);
+            }
+            ActionKind::EachScan { work, condition } => {
+                self.work(work, chart);
+                condition.iter_mut().for_each(|e| self.expr(e, &env));
+            }
+            ActionKind::Order(_) | ActionKind::Comment(_) => {}
+        }
+    }
+
+    fn action_target(&mut self, target: &mut Target, at: crate::Span, chart: &str) {
+        let mut e = match target {
+            Target::Path(path) => {
+                let kind = ExprKind::Path(Path { names: std::mem::take(&mut path.names) });
+                Expr { kind, at: at.into() }
+            }
+            Target::Element(element) => (**element).clone(),
+            Target::Work(work) => return self.work(work, chart),
+            Target::Direct(..) => return,
+        };
+        self.target(&mut e, &in_chart(Some(chart), Vec::new(), None));
+        *target = match e.kind {
+            ExprKind::Path(path) => Target::Path(path),
+            _ => Target::Element(Box::new(e)),
+        };
+    }
+
+    fn work(&mut self, work: &mut Work, chart: &str) {
+        match work {
+            Work::Block(block) => self.block(block, Some(chart), None),
+            Work::Single(s) => {
+                let at = s.at;
+                let list = self.statements(vec![(**s).clone()], &in_chart(Some(chart), Vec::new(), None));
+                *work = match <[Stmt; 1]>::try_from(list) {
+                    Ok([only]) if matches!(only.kind, StmtKind::Assign { .. } | StmtKind::Call(..)) => {
+                        Work::Single(Box::new(only))
+                    }
+                    Ok(one) => Work::Block(Block { locals: Vec::new(), statements: one.into(), at }),
+                    Err(statements) => Work::Block(Block { locals: Vec::new(), statements, at }),
+                };
+            }
+        }
+    }
+
+    fn body_of(&mut self, body: &mut Body, chart: Option<&str>) {
+        match body {
+            Body::St(block) => self.block(block, chart, None),
+            Body::Other(_, _, block) => {
+                let before = block.clone();
+                self.block(block, chart, None);
+                if *block != before {
+                    // The text of the other language no longer says what the statements do.
+                    *body = Body::St(std::mem::take(block));
+                }
+            }
+        }
+    }
+
+    fn block(&mut self, block: &mut Block, chart: Option<&str>, uncallable: Option<Said>) {
+        let locals = block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone()).collect();
+        let env = in_chart(chart, locals, uncallable);
+        block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.expr(e, &env));
+        block.statements = self.statements(std::mem::take(&mut block.statements), &env);
+    }
+
+    /// The statements that stand for some.
+    pub(super) fn statements(&mut self, list: Vec<Stmt>, env: &Env<'_, 'd>) -> Vec<Stmt> {
+        list.into_iter().flat_map(|s| self.statement(s, env)).collect()
+    }
+
+    fn statement(&mut self, s: Stmt, env: &Env<'_, 'd>) -> Vec<Stmt> {
+        let at = s.at;
+        let inside = matches!(env, Env::Block { .. });
+        if inside && !self.takes(1, at.0) {
+            return Vec::new();
+        }
+        let kind = match s.kind {
+            StmtKind::Call(path, args) => return self.call(path, args, at, env),
+            StmtKind::Assign { target, value } => return self.assignment(target, value, at, env),
+            StmtKind::If(arms, otherwise) => {
+                let arm = |(mut c, body)| {
+                    self.expr(&mut c, env);
+                    (c, self.statements(body, env))
+                };
+                let arms = arms.into_iter().map(arm).collect();
+                StmtKind::If(arms, self.statements(otherwise, env))
+            }
+            StmtKind::Case(mut selector, mut arms, otherwise) => {
+                self.expr(&mut selector, env);
+                for arm in &mut arms {
+                    for (from, to) in &mut arm.labels {
+                        self.expr(from, env);
+                        to.iter_mut().for_each(|e| self.expr(e, env));
+                    }
+                    arm.body = self.statements(std::mem::take(&mut arm.body), env);
+                }
+                StmtKind::Case(selector, arms, self.statements(otherwise, env))
+            }
+            StmtKind::For { mut var, mut from, mut to, mut by, body } => {
+                let upward = by.as_ref().is_none_or(|e| e.kind.whole().is_some_and(|n| n > 0));
+                let bounds = (self.whole(&from, env).filter(|_| upward), self.whole(&to, env));
+                let written = var.clone();
+                let mut name = Expr { kind: ExprKind::Path(Path { names: vec![var.clone()] }), at: var.at };
+                self.target(&mut name, env);
+                match one_name(name.kind) {
+                    Some(plain) => var = plain,
+                    None => {
+                        let what = say!("the variable of a loop is no element of an array");
+                        self.once(Problem::new(&codes::WRONG_KIND, var.at.0, what));
+                    }
+                }
+                [&mut from, &mut to].into_iter().chain(&mut by).for_each(|e| self.expr(e, env));
+                self.enter_loop(&written, bounds.0, bounds.1, &body);
+                let body = self.statements(body, env);
+                self.leave_loop();
+                StmtKind::For { var, from, to, by, body }
+            }
+            StmtKind::While(mut condition, body) => {
+                self.expr(&mut condition, env);
+                StmtKind::While(condition, self.statements(body, env))
+            }
+            StmtKind::Repeat(body, mut condition) => {
+                let body = self.statements(body, env);
+                self.expr(&mut condition, env);
+                StmtKind::Repeat(body, condition)
+            }
+            kind @ (StmtKind::Exit | StmtKind::Return) => kind,
+        };
+        vec![Stmt { kind, at }]
+    }
+
+    fn assignment(
+        &mut self,
+        mut target: Expr,
+        mut value: Expr,
+        at: crate::Place,
+        env: &Env<'_, 'd>,
+    ) -> Vec<Stmt> {
+        if self.is_structure(&target, env) && self.is_structure(&value, env) {
+            for e in [&mut target, &mut value] {
+                if let ExprKind::Element(_, index, _) = &mut e.kind {
+                    index.iter_mut().for_each(|i| self.expr(i, env));
+                }
+            }
+            return match self.copy(&target, &value, at, env) {
+                Ok(list) => list.unwrap_or_default(),
+                Err(_) => Vec::new(),
+            };
+        }
+        self.target(&mut target, env);
+        self.expr(&mut value, env);
+        vec![Stmt { kind: StmtKind::Assign { target, value }, at }]
+    }
+
+    /// Reports function blocks without instances: nobody looks into their bodies.
+    fn unused(&mut self, document: &Document) {
+        for item in &document.items {
+            let Item::Composed(c) = item else { continue };
+            let name = &c.name.text;
+            if c.body.is_none()
+                || self.used.contains(&**name)
+                || name.is_empty()
+                || self.wrong.contains(&**name)
+            {
+                continue;
+            }
+            let what = say!("the function block `{name}` has no instance, so it never runs");
+            let problem = Problem::new(&codes::CHART_UNUSED, c.name.at.0, what);
+            self.problems.push(problem.help(say!("write `var name : {name}`")));
+        }
+    }
+}
+
+/// The names of a chart, or of the file.
+fn in_chart<'e, 'd>(chart: Option<&'e str>, locals: Vec<Box<str>>, uncallable: Option<Said>) -> Env<'e, 'd> {
+    Env::Outer { chart, locals, uncallable }
+}
