@@ -1,4 +1,4 @@
-//! What an editor knows of structures and of function blocks of one's own.
+//! Hovers, changes of names, completion and colours for structures and function blocks of one's own.
 
 use g7_edit::spliced;
 use g7_ide::File;

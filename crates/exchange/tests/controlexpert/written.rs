@@ -308,9 +308,11 @@ fn charts() -> Vec<(String, Document)> {
         let text = String::from_utf8(std::fs::read(&path).expect("an example")).expect("UTF-8");
         charts.push((path.display().to_string(), under_unity(parse(&text))));
     }
-    // The charts of instances go out.
-    let instances =
-        |(name, d): (String, Document)| (name, g7_model::instances::instantiated(&d).0.into_owned());
+    // The charts of instances go out, and plain variables.
+    let instances = |(name, d): (String, Document)| {
+        let charts = g7_model::instances::instantiated(&d).0.into_owned();
+        (name, g7_model::composed::decomposed(&charts).0.into_owned())
+    };
     let mut charts: Vec<(String, Document)> = charts.into_iter().map(instances).collect();
     charts.retain(|(_, d)| g7_compile::compile(d).0.is_some() && d.charts().next().is_some());
     charts

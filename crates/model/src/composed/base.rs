@@ -27,6 +27,8 @@ pub struct Composition<'d> {
     pub(super) charts: HashMap<&'d str, Scope<'d>>,
     /// The types that cannot be; that is reported.
     pub(super) wrong: HashSet<&'d str>,
+    /// The types that hold a function block, their own or one of the standard.
+    pub(super) blocks: HashSet<&'d str>,
     /// The types of which there are variables.
     pub(super) used: HashSet<&'d str>,
     /// How many variables and statements can still be made.
@@ -86,6 +88,7 @@ impl<'d> Composition<'d> {
             file: HashMap::new(),
             charts: HashMap::new(),
             wrong: HashSet::new(),
+            blocks: HashSet::new(),
             used: HashSet::new(),
             room: MOST,
             full: false,

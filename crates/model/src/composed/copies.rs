@@ -37,7 +37,7 @@ impl<'d> Composition<'d> {
             let what = say!("`{}` and `{}` differ in bounds or type", to.shown(), from.shown());
             return Err(self.lost(Problem::new(&codes::WRONG_TYPE, at.0, what)));
         }
-        if self.holds_block(a) {
+        if self.blocks.contains(&*a.name.text) {
             let what = say!("an instance of `{}` cannot be copied", a.name.text);
             return Err(self.lost(Problem::new(&codes::NOT_WRITABLE, at.0, what)));
         }

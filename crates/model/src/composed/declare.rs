@@ -72,7 +72,7 @@ impl<'d> Composition<'d> {
     /// Reports what a variable with members cannot have.
     fn sensible(&mut self, v: &VarDecl, ty: &Composed) -> bool {
         let name = &ty.name.text;
-        let block = self.holds_block(ty);
+        let block = self.blocks.contains(&**name);
         let kind = match v.kind {
             VarKind::Input => Some(say!("an input")),
             VarKind::Output => Some(say!("an output")),
@@ -98,6 +98,9 @@ impl<'d> Composition<'d> {
     /// Declares the members of a part.
     fn parts(&mut self, ty: &'d Composed, part: Part<'_>, env: &Env<'_, 'd>, all: &mut Vec<VarDecl>) {
         for member in &ty.members {
+            if self.full {
+                return;
+            }
             for name in &member.names {
                 let Some(values) = self.fields(ty, member, &name.text, &part, env) else { return };
                 let mut inner = Part { values, retain: part.retain || member.retain, ..part.clone() };
@@ -143,10 +146,8 @@ impl<'d> Composition<'d> {
             part.dimensions.extend(own);
             return self.parts(ty, part, env, all);
         }
-        if let Some(of) = &member.of {
-            if !self.wrong.contains(&*of.text) {
-                self.unknown_type(of);
-            }
+        if let Some(of) = member.of.as_ref().filter(|of| !self.wrong.contains(&*of.text)) {
+            self.unknown_type(of);
         }
         part.dimensions.extend(own);
         if self.takes(1, part.at.0) {

@@ -17,7 +17,8 @@ impl<'d> Composition<'d> {
         let mut all: Vec<Segment> = Vec::new();
         for (n, name) in path.names.iter().enumerate() {
             let slot = slot_of(&name.text).filter(|_| n < last);
-            let numbered = instance_of(&name.text).filter(|_| self.base(&name.text, env).is_none());
+            let whole = |text: &str| self.base(text, env).is_some() || self.charts.contains_key(text);
+            let numbered = instance_of(&name.text).filter(|_| !whole(&name.text));
             let (text, index) = match (slot, numbered) {
                 (Some((bare, count)), _) => (bare, rest.by_ref().take(count).collect()),
                 (None, Some((bare, number))) => (bare, vec![number_of(number, name.at)]),
@@ -82,7 +83,7 @@ impl<'d> Composition<'d> {
     fn captured(&mut self, name: &Name, instance: &Spot<'d>, env: &Env<'_, 'd>) -> Result<(), Lost> {
         let (chart, locals) = env.root();
         let own = chart.and_then(|c| self.charts.get(c)?.get(&*name.text)).map(|v| v.at.0);
-        let Some(own) = own.or_else(|| locals.iter().any(|l| *l == name.text).then_some(instance.at)) else {
+        let Some(own) = own.or_else(|| locals.contains(&name.text).then_some(instance.at)) else {
             return Ok(());
         };
         let what = say!("`{}` also has a meaning where this function block is called", name.text);

@@ -1,6 +1,6 @@
 //! The body of a function block without RETURN: in a call it stands among the statements of the caller, which go on.
 
-use crate::{Problem, Span, Stmt, StmtKind, codes, say};
+use crate::{Expr, ExprKind, Problem, Span, Stmt, StmtKind, UnaryOp, codes, say};
 
 /// The most statements that a body may have when the statements behind a RETURN are put aside.
 const MOST: usize = 1 << 14;
@@ -45,7 +45,7 @@ fn before(mut list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {
         StmtKind::Return => return taken(list, room),
         StmtKind::If(arms, otherwise) => {
             let arms: Result<_, _> = arms.into_iter().map(|(c, body)| Ok((c, arm(body)?))).collect();
-            StmtKind::If(arms?, arm(otherwise)?)
+            unless(arms?, arm(otherwise)?)
         }
         StmtKind::Case(selector, mut arms, otherwise) => {
             for a in &mut arms {
@@ -62,6 +62,19 @@ fn before(mut list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {
     };
     list.push(Stmt { kind, at });
     taken(list, room)
+}
+
+/// An IF; one whose only arm is empty asks for the contrary.
+fn unless(mut arms: Vec<(Expr, Vec<Stmt>)>, otherwise: Vec<Stmt>) -> StmtKind {
+    match arms.as_mut_slice() {
+        [(condition, body)] if body.is_empty() && !otherwise.is_empty() => {
+            let at = condition.at;
+            let inner = std::mem::replace(condition, Expr { kind: ExprKind::Bad, at });
+            let kind = ExprKind::Unary(UnaryOp::Not, Box::new(inner));
+            StmtKind::If(vec![(Expr { kind, at }, otherwise)], Vec::new())
+        }
+        _ => StmtKind::If(arms, otherwise),
+    }
 }
 
 fn taken(list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {

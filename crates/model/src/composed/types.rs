@@ -88,6 +88,13 @@ impl<'d> Composition<'d> {
         let inner: Vec<&'d Composed> = of.iter().filter_map(|m| self.type_of(m)).collect();
         let deepest = inner.into_iter().map(|t| self.depth(t, way, depths)).max();
         way.pop();
+        let held = |m: &VarDecl| match &m.of {
+            Some(of) => self.blocks.contains(&*of.text),
+            None => matches!(m.ty, Type::Fb(_)),
+        };
+        if c.body.is_some() || c.members.iter().any(held) {
+            self.blocks.insert(name);
+        }
         let depth = deepest.map_or(0, |d| d + 1).min(DEEP);
         depths.insert(name, depth);
         depth
@@ -109,15 +116,6 @@ impl<'d> Composition<'d> {
                 "types are those of IEC 61131-3, and those that `struct` and `function block` declare"
             )),
         });
-    }
-
-    /// True if a variable of the type holds a function block, its own or one of the standard.
-    pub(super) fn holds_block(&self, c: &Composed) -> bool {
-        let held = |m: &VarDecl| match self.type_of(m) {
-            Some(t) => self.holds_block(t),
-            None => m.of.is_none() && matches!(m.ty, Type::Fb(_)),
-        };
-        c.body.is_some() || c.members.iter().any(held)
     }
 
     pub(super) fn too_large(&mut self, at: Span) {

@@ -63,7 +63,8 @@ pub const FILE: &[Word] = &[
     Word::reserved("action", ["a named action", "une action nommée", "uma ação com nome"]),
     SECTION,
     Word::reserved("function", ["a function", "une fonction", "uma função"]),
-    Word::reserved("function", ["a function block", "un bloc fonctionnel", "um bloco funcional"]).then(" block"),
+    Word::reserved("function", ["a function block", "un bloc fonctionnel", "um bloco funcional"])
+        .then(" block"),
     Word::free("struct", ["a structure", "une structure", "uma estrutura"]),
     PRE,
     POST,

@@ -111,7 +111,8 @@ impl Parser<'_> {
 
     fn more_members(&mut self) -> bool {
         self.skip_semis();
-        !matches!(self.cur.kind, Tok::RBrace | Tok::End) && !(self.cur.newline && self.at_file_start())
+        let ends = matches!(self.cur.kind, Tok::RBrace | Tok::End);
+        !(ends || self.cur.newline && self.at_file_start())
     }
 
     fn lost_member(&mut self, what: Said) {
