@@ -75,6 +75,7 @@ const SCENES: Record<string, Scene> = {
   'modelling/or-into-and.g7': { acts: [push('p1'), 500] },
   'structure/enclosing.g7': { acts: [turn('on'), 7000], chart: 'Pumps' },
   'structure/gemma.g7': { acts: [turn('auto'), 2000, push('start'), 800], chart: 'Modes' },
+  'structure/drives.g7': { acts: [push('start'), 200, turn('contactor[3]'), 400, turn('contactor[2]'), 900] },
   'structure/instances.g7': { acts: [turn('start'), turn('home[1]'), turn('home[2]'), turn('home[4]'), turn('home[5]'), 800, turn('reached[1]'), turn('reached[4]'), 800] },
   'structure/linked-charts.g7': { acts: [turn('gate'), turn('start'), 2500], chart: 'Wash' },
   'structure/macro-step.g7': { acts: [push('start'), 2600], chart: 'Drill' },

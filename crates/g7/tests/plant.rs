@@ -130,3 +130,42 @@ fn what_cannot_be_mirrored_is_refused() {
     let wrong = folder.g7(&["plant", "--listen", "here"]);
     assert!(wrong.is(2).err.contains("--listen"), "{}", wrong.err);
 }
+
+#[test]
+fn a_plant_reads_and_drives_members_of_structures() {
+    let text = "struct Limit { open : BOOL closed : BOOL }
+struct Tank { level : REAL valve : BOOL }
+input limit : ARRAY[1..2] OF Limit
+input tank : Tank
+output coil : ARRAY[1..2] OF Limit
+var kept : Tank := (level := 4.0) retain
+plant P {
+  state place : REAL := 0.0
+  rate place := 10.0 when coil[1].open
+  drive limit[1].open := place > 5.0
+  drive tank.level := place
+}
+chart G {
+  initial step 1
+  step 2 { N coil[1].open P1 kept := tank }
+  1 -> 2 when not limit[1].open and tank.valve
+  2 -> 1 when ↑limit[1].open
+}
+test \"t\" with P {
+  set tank.valve := TRUE
+  wait 300ms
+  expect coil[1].open, kept.level = 0.0
+  wait 400ms
+  expect tank.level > 5.0, G.X1, kept.valve
+  restart
+  expect kept.valve, kept.level = 0.0
+  force limit[2].closed := TRUE
+  scan
+  expect limit[2].closed
+  release limit[2].closed
+}
+";
+    let folder = Folder::with(text);
+    let ran = folder.g7(&["test"]);
+    assert!(ran.is(0).out.contains("1 passed, 0 failed"), "{}", ran.out);
+}

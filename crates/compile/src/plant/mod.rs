@@ -55,7 +55,11 @@ struct PlantDocument {
 /// Makes the document of a plant; `unit` is that of the charts it answers.
 fn document(doc: &Document, plant: &Plant, unit: &Unit, queries: &[Expr]) -> (PlantDocument, Vec<Problem>) {
     let mut maker = Maker {
-        rewrite: Rewrite { charts: unit.charts.iter().map(|c| &*c.name).collect(), ..Rewrite::default() },
+        rewrite: Rewrite {
+            charts: unit.charts.iter().map(|c| &*c.name).collect(),
+            outputs: unit.vars.iter().filter(|v| v.class == VarClass::Output).map(|v| &*v.name).collect(),
+            ..Rewrite::default()
+        },
         vars: Vec::new(),
         own: HashMap::new(),
         arrivals: Vec::new(),

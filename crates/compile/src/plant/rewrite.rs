@@ -20,6 +20,8 @@ pub(super) const DT: &str = "@dt";
 pub(super) struct Rewrite<'d> {
     pub(super) tables: HashMap<&'d str, Table<'d>>,
     pub(super) charts: Vec<&'d str>,
+    /// The names of the outputs of the charts.
+    pub(super) outputs: HashSet<&'d str>,
     pub(super) problems: Vec<Problem>,
     /// Functions that are called.
     pub(super) called: HashSet<Box<str>>,
@@ -114,6 +116,7 @@ impl Rewrite<'_> {
             [table, ..] if self.tables.contains_key(table) => self.member(at, table, &names[1..]),
             // An output of a chart has one name in the document of the plant.
             [chart, name] if self.charts.contains(&chart) => at.var(&format!("{chart}.{name}")),
+            [_, _, ..] if self.outputs.contains(&*path.text()) => at.var(&path.text()),
             _ => at.expr(ExprKind::Path(path.clone())),
         }
     }

@@ -444,6 +444,11 @@ impl Parser<'_> {
     /// Reads `a.b.c`. The caller has checked that a name stands here.
     pub(super) fn path(&mut self) -> Path {
         let first = self.name(say!("a name"));
+        self.path_from(first)
+    }
+
+    /// The same behind its first name.
+    pub(super) fn path_from(&mut self, first: Name) -> Path {
         let mut names = vec![self.chart_of_path(first)];
         while self.eat(Tok::PathDot)
             || names.len() == 1 && self.prev.kind == Tok::RBracket && self.dot_of_member()

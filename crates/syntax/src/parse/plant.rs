@@ -3,8 +3,7 @@
 use super::Parser;
 use crate::lexer::Tok;
 use g7_model::{
-    Arrivals, Binding, Drive, Expr, Name, Parts, Path, Plant, PlantItem, Rate, Said, StateVar, View, say,
-    words,
+    Arrivals, Binding, Drive, Expr, Name, Parts, Plant, PlantItem, Rate, Said, StateVar, View, say, words,
 };
 
 impl Parser<'_> {
@@ -122,7 +121,8 @@ impl Parser<'_> {
     fn drive(&mut self) -> Drive {
         let start = self.bump().start;
         let first = self.cur.start;
-        let path = Path { names: vec![self.name(say!("the name of an input"))] };
+        let name = self.name(say!("the name of an input"));
+        let path = self.path_from(name);
         let kind = self.variable_of(path);
         let input = Expr { kind, at: self.since(first).into() };
         let value = if self.assign_sign() { self.expr() } else { self.bad() };
