@@ -59,8 +59,13 @@ impl Model {
                     (_, false) => whole.kind,
                 };
                 let names = vec![Name::new(format!("{}.{}", prefix.text, name.text), name.at.0)];
+                let init = init.map(|e| with_constants(&ty, e));
+                let mut array = member.array.clone();
+                for (least, most) in array.iter_mut().flat_map(|a| &mut a.dimensions) {
+                    (*least, *most) = (with_constants(&ty, least), with_constants(&ty, most));
+                }
                 let retain = whole.retain || member.retain;
-                self.declare(scope, &VarDecl { names, init: init.cloned(), kind, retain, ..member.clone() });
+                self.declare(scope, &VarDecl { names, init, array, kind, retain, ..member.clone() });
             }
         }
     }
@@ -70,6 +75,13 @@ impl Model {
 fn field<'e>(e: &'e Expr, name: &str) -> Option<&'e Expr> {
     let ExprKind::Call(_, fields) = &e.kind else { return None };
     fields.iter().find(|f| f.name.as_ref().is_some_and(|n| &*n.text == name)).map(|f| &f.value)
+}
+
+/// The value of a constant of the type, where an expression is the name of one.
+fn with_constants(ty: &Composed, e: &Expr) -> Expr {
+    let ExprKind::Path(path) = &e.kind else { return e.clone() };
+    let named = |m: &&VarDecl| m.kind == VarKind::Const && m.names.iter().any(|n| *n.text == path.text());
+    ty.members.iter().find(named).and_then(|m| m.init.clone()).unwrap_or_else(|| e.clone())
 }
 
 fn has(ty: &Composed, name: &str) -> bool {

@@ -25,6 +25,8 @@ pub struct Composition<'d> {
     pub(super) types: HashMap<&'d str, &'d Composed>,
     pub(super) file: Scope<'d>,
     pub(super) charts: HashMap<&'d str, Scope<'d>>,
+    /// The transition sections of the file.
+    pub(super) sections: HashSet<&'d str>,
     /// The types that cannot be; that is reported.
     pub(super) wrong: HashSet<&'d str>,
     /// The types that hold a function block, their own or one of the standard.
@@ -87,6 +89,7 @@ impl<'d> Composition<'d> {
             types: HashMap::new(),
             file: HashMap::new(),
             charts: HashMap::new(),
+            sections: HashSet::new(),
             wrong: HashSet::new(),
             blocks: HashSet::new(),
             used: HashSet::new(),
@@ -98,6 +101,7 @@ impl<'d> Composition<'d> {
         for item in &document.items {
             match item {
                 Item::Var(v) => declare(&mut made.file, v),
+                Item::Section(s) => _ = made.sections.insert(&s.name.text),
                 Item::Chart(c) => {
                     let scope = made.charts.entry(&*c.name.text).or_default();
                     vars(c).for_each(|v| declare(scope, v));

@@ -32,8 +32,10 @@ impl<'d> Composition<'d> {
     /// The statements of a call, whose arguments are not replaced yet.
     pub(super) fn call(&mut self, path: Path, mut args: Vec<Arg>, at: Place, env: &Env<'_, 'd>) -> Vec<Stmt> {
         let segments = self.segments(&path, &[], env);
-        let spot = match self.spot(&segments, env) {
-            Ok(spot) => spot,
+        // Other names of calls are those of services and functions.
+        let variable = segments.first().is_some_and(|s| self.is_variable(&s.name.text, env));
+        let spot = match variable.then(|| self.spot(&segments, env)).transpose() {
+            Ok(spot) => spot.flatten(),
             Err(Lost) => return Vec::new(),
         };
         let Some(of) = spot.as_ref().and_then(|s| s.of) else {

@@ -4,7 +4,7 @@ use super::base::{Composition, Env, MOST, has_fields, is_local};
 use super::paths::filled;
 use crate::{
     Arg, Array, Composed, Expr, ExprKind, Literal, Local, Name, Nanos, Path, Place, Problem, Stmt, StmtKind,
-    Type, VarDecl, VarKind, codes, say,
+    Type, VarDecl, VarKind, codes, say, visit_mut,
 };
 
 /// A part of a variable whose members are declared.
@@ -108,10 +108,10 @@ impl<'d> Composition<'d> {
                     inner.kind = if member.kind == VarKind::Const { VarKind::Const } else { VarKind::Var };
                 }
                 if is_local(ty, member) && !part.dimensions.is_empty() {
-                    self.each(member, name, &inner, env, all);
+                    self.each((ty, member), name, &inner, env, all);
                 } else {
                     inner.text = format!("{}.{}", part.text, name.text);
-                    self.member(member, inner, env, all);
+                    self.member((ty, member), inner, env, all);
                 }
             }
         }
@@ -121,7 +121,7 @@ impl<'d> Composition<'d> {
     /// Declares a member for each element of its arrays, as one variable each.
     fn each(
         &mut self,
-        member: &'d VarDecl,
+        member: (&Composed, &'d VarDecl),
         name: &Name,
         part: &Part<'_>,
         env: &Env<'_, 'd>,
@@ -136,9 +136,15 @@ impl<'d> Composition<'d> {
         }
     }
 
-    /// Declares one member, whose own bounds come last.
-    fn member(&mut self, member: &'d VarDecl, mut part: Part<'_>, env: &Env<'_, 'd>, all: &mut Vec<VarDecl>) {
-        let own = member.array.as_ref().map_or(Vec::new(), |a| a.dimensions.clone());
+    /// Declares one member of a type, whose own bounds come last.
+    fn member(
+        &mut self,
+        (of, member): (&Composed, &'d VarDecl),
+        mut part: Part<'_>,
+        env: &Env<'_, 'd>,
+        all: &mut Vec<VarDecl>,
+    ) {
+        let own = bounds(of, member);
         if let Some(ty) = self.type_of(member) {
             self.used.insert(&ty.name.text);
             part.values = self.values(&own, part.values, ty, env);
@@ -174,10 +180,11 @@ impl<'d> Composition<'d> {
                 e
             }));
         }
+        let usual = member.init.as_ref().map(|e| self.usual(ty, e, env));
         for value in &mut values {
-            *value = value.take().or_else(|| member.init.clone());
+            *value = value.take().or_else(|| usual.clone());
         }
-        let own = member.array.as_ref().map_or(&[][..], |a| &a.dimensions);
+        let own = &bounds(ty, member);
         if own.is_empty() || self.type_of(member).is_some() || values.iter().all(Option::is_none) {
             return Some(values);
         }
@@ -186,6 +193,21 @@ impl<'d> Composition<'d> {
         let lists = values.into_iter().map(|v| self.expanded(v, count)).collect::<Vec<_>>();
         let all: Vec<Option<Expr>> = lists.into_iter().flatten().collect();
         self.takes(all.len() / 16, at).then_some(all)
+    }
+
+    /// The value in the declaration of a type: it names constants of the type, or what the file has.
+    fn usual(&mut self, ty: &Composed, e: &Expr, env: &Env<'_, 'd>) -> Expr {
+        let mut e = e.clone();
+        visit_mut::expr(&mut e, &mut Constants(ty));
+        let mut names = Names(Vec::new());
+        visit_mut::expr(&mut e, &mut names);
+        let (chart, _) = env.root();
+        for name in names.0 {
+            if let Some(own) = chart.and_then(|c| self.charts.get(c)?.get(&*name.text)).map(|v| v.at.0) {
+                self.once(super::paths::two_meanings(&name, own));
+            }
+        }
+        e
     }
 
     /// The values of the elements of an array, for each of some wholes.
@@ -215,14 +237,14 @@ impl<'d> Composition<'d> {
                     let room = count.saturating_sub(values.len());
                     if times as usize > room {
                         let what = say!("there are more values than the {count} elements of the array");
-                        self.problems.push(Problem::new(&codes::OUT_OF_RANGE, at.0, what));
+                        self.once(Problem::new(&codes::OUT_OF_RANGE, at.0, what));
                     }
                     values.extend(std::iter::repeat_n(Some(value), room.min(times as usize)));
                 }
             }
             Some(e) => {
                 let what = say!("the values of an array stand in brackets");
-                self.problems.push(Problem::new(&codes::WRONG_TYPE, e.at.0, what));
+                self.once(Problem::new(&codes::WRONG_TYPE, e.at.0, what));
             }
             None => {}
         }
@@ -318,11 +340,50 @@ impl<'d> Composition<'d> {
     }
 }
 
+/// The bounds of a member, with the values of constants of its type.
+fn bounds(ty: &Composed, member: &VarDecl) -> Vec<(Expr, Expr)> {
+    let mut all = member.array.as_ref().map_or(Vec::new(), |a| a.dimensions.clone());
+    for (least, most) in &mut all {
+        visit_mut::expr(least, &mut Constants(ty));
+        visit_mut::expr(most, &mut Constants(ty));
+    }
+    all
+}
+
+/// Puts the written numbers and values of a type's own constants in the place of their names.
+struct Constants<'c>(&'c Composed);
+
+impl visit_mut::Visitor for Constants<'_> {
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Path(path) = &e.kind else { return };
+        let [name] = path.names.as_slice() else { return };
+        let own = super::paths::member(self.0, &name.text).filter(|m| m.kind == VarKind::Const);
+        if let Some(Expr { kind: kind @ (ExprKind::Literal(_) | ExprKind::Unary(..)), .. }) =
+            own.and_then(|m| m.init.as_ref())
+        {
+            e.kind = kind.clone();
+        }
+    }
+}
+
+/// The first names of all paths in an expression.
+struct Names(Vec<Name>);
+
+impl visit_mut::Visitor for Names {
+    fn path(&mut self, path: &mut Path, _: visit_mut::Use, _: crate::Span) {
+        self.0.extend(path.names.first().cloned());
+    }
+}
+
 /// A member of a declaration as one variable or array.
 fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
-    let list = part.values.iter().any(Option::is_some);
+    let constant = part.kind == VarKind::Const;
+    let list = constant || part.values.iter().any(Option::is_some);
     let init = match part.dimensions.is_empty() {
-        true => part.values.into_iter().next().flatten(),
+        true => {
+            let value = part.values.into_iter().next().flatten();
+            value.or_else(|| constant.then(|| zero(member.ty, part.at)))
+        }
         false => list.then(|| {
             let zero = zero(member.ty, part.at);
             let values = part.values.into_iter().map(|v| (1, v.unwrap_or_else(|| zero.clone()))).collect();
@@ -340,7 +401,7 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
         init,
         address: None,
         inverted: false,
-        retain: part.retain && part.kind == VarKind::Var && !matches!(member.ty, Type::Fb(_)),
+        retain: part.retain && part.kind == VarKind::Var,
         safe: None,
         comment: member.comment.clone().or_else(|| part.whole.comment.clone()),
         at: part.whole.at,

@@ -32,6 +32,17 @@ impl<'d> Composition<'d> {
         all
     }
 
+    /// True if a path can begin with the name and lead to a variable.
+    pub(super) fn is_variable(&self, name: &str, env: &Env<'_, 'd>) -> bool {
+        let inner = match env {
+            Env::Block { instance, inouts, .. } => {
+                inouts.contains_key(name) || instance.of.is_some_and(|of| member(of, name).is_some())
+            }
+            Env::Outer { .. } => self.base(name, env).is_some(),
+        };
+        inner || self.file.contains_key(name) || self.charts.contains_key(name)
+    }
+
     /// The variable that a name alone means, outside of function blocks.
     fn base(&self, name: &str, env: &Env<'_, 'd>) -> Option<&'d VarDecl> {
         let (chart, locals) = env.root();
@@ -72,6 +83,9 @@ impl<'d> Composition<'d> {
                     spot.inner = false;
                     return self.follow(spot, rest).map(Some);
                 }
+                if !self.is_variable(&first.name.text, env) && !self.sections.contains(&*first.name.text) {
+                    return Err(self.foreign(&first.name));
+                }
                 self.captured(&first.name, instance, env)?;
                 let outside = Env::outside();
                 self.spot(segments, &outside)
@@ -86,14 +100,19 @@ impl<'d> Composition<'d> {
         let Some(own) = own.or_else(|| locals.contains(&name.text).then_some(instance.at)) else {
             return Ok(());
         };
-        let what = say!("`{}` also has a meaning where this function block is called", name.text);
-        let problem =
-            Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(own, say!("in this chart"));
-        let help = say!(
-            "a function block sees its own variables and those of the file; give one of the two another name"
-        );
-        self.problems.push(problem.help(help));
+        self.once(two_meanings(name, own));
         Err(Lost)
+    }
+
+    /// Reports a name in a function block that neither it nor the file has: in the calling chart, it would be that of
+    /// a step there.
+    fn foreign(&mut self, name: &Name) -> Lost {
+        if name.text.is_empty() {
+            return Lost; // The name could not be read; the parser has reported it.
+        }
+        let what = say!("neither this function block nor the file has a variable `{}`", name.text);
+        self.once(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what));
+        Lost
     }
 
     fn start(&self, segment: &Segment, decl: &'d VarDecl, chart: Option<Name>) -> Spot<'d> {
@@ -293,6 +312,15 @@ impl Spot<'_> {
         names.append(&mut tail);
         ExprKind::Element(Box::new(Path { names }), index, bit)
     }
+}
+
+/// A name of the file in a type that has another meaning where a variable of the type stands.
+pub(super) fn two_meanings(name: &Name, own: Span) -> Problem {
+    let what = say!("`{}` also has a meaning where this function block is called", name.text);
+    let help = say!(
+        "a function block sees its own variables and those of the file; give one of the two another name"
+    );
+    Problem::new(&codes::DEFINED_TWICE, name.at.0, what).related(own, say!("in this chart")).help(help)
 }
 
 /// The member of a type.
