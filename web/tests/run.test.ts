@@ -51,6 +51,37 @@ instance Axis[1..2]
 instance Last : Axis(3)
 `;
 
+// Six instances of a function block with four members each, and so many variables that the list is long.
+const DRIVES = `function block Keep {
+  input raw : BOOL
+  output q : BOOL
+  output calls : INT
+  var spare : BOOL
+  body {
+    q := raw
+    calls := calls + 1
+    spare := not q
+  }
+}
+var d : ARRAY[1..6] OF Keep
+var n : ARRAY[1..20] OF INT
+
+post {
+  var i : INT
+  FOR i := 1 TO 6 DO
+    d[i]()
+    n[i] := d[i].calls
+  END_FOR
+}
+
+chart G {
+  initial step 1
+  step 2
+  1 -> 2 when d[1].q
+  2 -> 1 when not d[1].q
+}
+`;
+
 const FAULT = `input a : BOOL
 var n, q : INT
 
@@ -71,6 +102,7 @@ before(async () => {
     'fleeting.g7': FLEETING,
     'fault.g7': FAULT,
     'axes.g7': AXES,
+    'drives.g7': DRIVES,
     'tanks.g7': example('two-tanks/chart.g7'),
     'two-tanks.svg': example('two-tanks/two-tanks.svg'),
     'bead-sorter/exercise-1.g7': example('bead-sorter/exercise-1.g7'),
@@ -134,6 +166,24 @@ test('the instances of a chart: a table of situations, and the marks of the chos
   await p.getByRole('switch', { name: 'go[2]', exact: true }).click();
   await oneScan(p);
   await until(async () => (await rows())[1] === 'Axis[2] 1', 'back again');
+  await end(p);
+});
+
+test('the members of structures and function blocks stand in groups, which a long list closes', async () => {
+  const p = await open(b, site, 'drives.g7');
+  await oneScan(p);
+  const signals = p.getByRole('region', { name: 'Signals' });
+  const group = (name: RegExp) => signals.locator('summary').filter({ hasText: name });
+  const lamp = (name: string) => signals.getByRole('switch', { name, exact: true });
+  assert.equal(await lamp('d[2].q').count(), 0);
+  await group(/^d 24$/).click();
+  await lamp('d[2].raw').click();
+  await oneScan(p);
+  await until(async () => (await lamp('d[2].q').getAttribute('aria-checked')) === 'true', 'the output follows the input');
+  await group(/^d 24$/).click();
+  await until(async () => (await lamp('d[2].q').count()) === 0, 'the group is closed again');
+  await signals.getByRole('searchbox').fill('[6].q');
+  await until(async () => (await lamp('d[6].q').count()) === 1, 'the filter finds a member in a closed group');
   await end(p);
 });
 

@@ -165,7 +165,8 @@ impl<'d> Composition<'d> {
                 );
             }
         }
-        if self.problems.len() > told {
+        let meant = |n: &Name| inouts.contains_key(&*n.text);
+        if self.problems.len() > told || !of.inouts.iter().flat_map(|d| &d.names).all(meant) {
             return None; // A name that has no meaning would be told again at each of its places.
         }
         let inner = Env::Block { instance: spot, inouts, outer: env };
