@@ -116,8 +116,12 @@ fn same(document: &Document, at: &str) -> (usize, usize, usize) {
 #[test]
 fn random_charts() {
     let (mut answers, mut runs, mut states) = (0, 0, 0);
-    for profile in ProfileName::ALL {
-        for seed in 1..=25 {
+    // Which charts of the generator can be searched whole is chance: more are made until enough is compared.
+    for seed in 1..=75 {
+        if seed > 25 && answers > 600 && runs > 250 && states > 2000 {
+            break;
+        }
+        for profile in ProfileName::ALL {
             let sample = sample(seed, profile, 1).expect("a random chart can be read");
             let (a, r, s) =
                 same(&sample.document, &format!("{} seed {seed}\n{}", profile.name(), sample.text));
