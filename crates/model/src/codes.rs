@@ -58,7 +58,7 @@ codes! {
     SAME_TRANSITION = "G0106" Warning "a transition that stands there twice" "IEC 60848:2013, 4.4";
     TASK_END_ACTS = "G0107" Warning "an end of a task with an action" "Actions, counters, macro-steps and tasks";
     NEVER_CLEARS = "G0108" Warning "a receptivity that is never true" "IEC 60848:2013, 4.7";
-    CHART_UNUSED = "G0109" Warning "an expansion or task that nothing uses" "IEC 60848:2013, 7.5";
+    CHART_UNUSED = "G0109" Warning "a chart or function block that nothing uses" "IEC 60848:2013, 7.5";
     STARTS_EMPTY = "G0110" Warning "an initial enclosing step with no initial step inside" "IEC 60848:2013, 7.4";
     DEAD_END = "G0111" Warning "a step without a way out" "IEC 60848:2013, 4.4";
     NEVER_JOINS = "G0112" Warning "branches that never come together" "IEC 60848:2013, 4.4";
