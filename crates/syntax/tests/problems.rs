@@ -56,12 +56,11 @@ fn misspelt_words_are_read_as_what_was_meant() {
         ],
     );
     expect(
-        "profile iec6113\nprofile unity { multitoken }\ntarget tsx47\ninput a : BOL\n",
+        "profile iec6113\nprofile unity { multitoken }\ntarget tsx47\n",
         &[
             ("1:9 G0009", "did you mean `iec61131`?"),
             ("2:17 G0009", "did you mean `multi-token`?"),
             ("3:8 G0009", "did you mean `tsx57`?"),
-            ("4:11 G0009", "did you mean `BOOL`?"),
         ],
     );
 }

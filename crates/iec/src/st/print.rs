@@ -180,7 +180,10 @@ impl Writer<'_> {
                     _ => Type::Bool,
                 };
                 let text = inner.converted(ty).within(8);
-                Text { text: format!("NOT {text}"), ty: Ty::Known(ty), strength: 8 }
+                // matiec does not read NOT NOT.
+                let text =
+                    if text.starts_with("NOT ") { format!("NOT ({text})") } else { format!("NOT {text}") };
+                Text { text, ty: Ty::Known(ty), strength: 8 }
             }
             UnaryOp::Neg => {
                 let inner = self.text(inner);

@@ -70,8 +70,14 @@ fn unless(mut arms: Vec<(Expr, Vec<Stmt>)>, otherwise: Vec<Stmt>) -> StmtKind {
         [(condition, body)] if body.is_empty() && !otherwise.is_empty() => {
             let at = condition.at;
             let inner = std::mem::replace(condition, Expr { kind: ExprKind::Bad, at });
-            let kind = ExprKind::Unary(UnaryOp::Not, Box::new(inner));
-            StmtKind::If(vec![(Expr { kind, at }, otherwise)], Vec::new())
+            let contrary = match inner.kind {
+                ExprKind::Unary(UnaryOp::Not, whole) => *whole,
+                kind => {
+                    let kind = ExprKind::Unary(UnaryOp::Not, Box::new(Expr { kind, at }));
+                    Expr { kind, at }
+                }
+            };
+            StmtKind::If(vec![(contrary, otherwise)], Vec::new())
         }
         _ => StmtKind::If(arms, otherwise),
     }

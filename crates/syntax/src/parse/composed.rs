@@ -5,7 +5,8 @@ use crate::lexer::Tok;
 use crate::words;
 use g7_iec::constant;
 use g7_model::{
-    Arg, Body, Composed, Expr, ExprKind, Name, Path, Said, Type, VarDecl, VarKind, codes, say, words as table,
+    Arg, Block, Body, Composed, Expr, ExprKind, Name, Path, Said, Type, VarDecl, VarKind, codes, say,
+    words as table,
 };
 
 impl Parser<'_> {
@@ -65,8 +66,9 @@ impl Parser<'_> {
             let what = say!("the function block `{}` has no body", made.name.text);
             self.problem_help(&codes::EXPECTED, at, what, say!("write `body {{ … }}` behind its variables"));
         }
-        made.body = Some(body.unwrap_or_else(|| Body::St(Default::default())));
         made.at = self.since(start).into();
+        let empty = Block { locals: Vec::new(), statements: Vec::new(), at: made.at };
+        made.body = Some(body.unwrap_or(Body::St(empty)));
         made
     }
 
