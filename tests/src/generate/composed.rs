@@ -40,6 +40,6 @@ pub(super) fn composed(rng: &Rng, outside: &Sight, out: &mut String) {
         "chart Blocks {{\n  initial step Rest {{\n    each scan: {call}at := ({go}), all := total, kept := kept[1])\n    N lasted.on if held[2].long\n  }}\n  \
          step Work {{\n    each scan: {{\n      lone({block}, all := kept[2].n, sum => turn)\n      turn := turn MOD 2 + 1\n      {copy}\n      \
          lasted.n := kept[turn].n + held[turn].sum\n    }}\n    N glow if lone.long\n  }}\n  \
-         Rest -> Work when held[2].long or held[1].sum > {limit} or {back}\n  Work -> Rest when ({back}) or lone.sum > {limit}\n}}\n"
+         Rest -> Work when (held[2].long or held[1].sum > {limit} or ({go})) and not ({back})\n  Work -> Rest when {back}\n}}\n"
     ));
 }
