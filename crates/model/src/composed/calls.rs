@@ -31,7 +31,11 @@ struct Call<'c, 'd> {
 impl<'d> Composition<'d> {
     /// The statements of a call, whose arguments are not replaced yet.
     pub(super) fn call(&mut self, path: Path, mut args: Vec<Arg>, at: Place, env: &Env<'_, 'd>) -> Vec<Stmt> {
-        let segments = self.segments(&path, &[], env);
+        let mut segments = self.segments(&path, &[], env);
+        // The index of the instance itself stays as it is written: a CASE compares other indexes with it.
+        if let Some((_, before)) = segments.split_last_mut() {
+            self.indexed(before, env);
+        }
         // Other names of calls are those of services and functions.
         let variable = segments.first().is_some_and(|s| self.is_variable(&s.name.text, env));
         let spot = match variable.then(|| self.spot(&segments, env)).transpose() {

@@ -5,25 +5,15 @@ use super::paths::Lost;
 use crate::{Expr, ExprKind, Place, Problem, Stmt, StmtKind, codes, say};
 
 impl<'d> Composition<'d> {
-    /// The assignments of all members, if both sides are structures; `None` if neither is one. The indexes of both
-    /// are replaced already.
-    pub(super) fn copy(
-        &mut self,
-        target: &Expr,
-        value: &Expr,
-        at: Place,
-        env: &Env<'_, 'd>,
-    ) -> Result<Option<Vec<Stmt>>, Lost> {
-        let (to, from) = (self.spot_of(target, env)?, self.spot_of(value, env)?);
-        match (to, from) {
-            (Some(to), Some(from)) if to.of.is_some() && from.of.is_some() => {
-                self.copied(to, from, at, env).map(Some)
-            }
-            _ => Ok(None),
+    /// The assignments of all members of one structure to those of another one.
+    pub(super) fn copy(&mut self, target: &Expr, value: &Expr, at: Place, env: &Env<'_, 'd>) -> Vec<Stmt> {
+        match (self.spot_of(target, env), self.spot_of(value, env)) {
+            (Ok(Some(to)), Ok(Some(from))) => self.copied(to, from, at, env).unwrap_or_default(),
+            _ => Vec::new(),
         }
     }
 
-    /// The assignments of all members of one structure to those of another one.
+    /// The same for variables that are found already.
     pub(super) fn copied(
         &mut self,
         to: Spot<'d>,

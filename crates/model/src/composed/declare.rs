@@ -127,12 +127,38 @@ impl<'d> Composition<'d> {
         env: &Env<'_, 'd>,
         all: &mut Vec<VarDecl>,
     ) {
-        let Some(indexes) = self.indexes(&part.dimensions, env) else { return };
+        let Some(indexes) = self.indexes(&part.dimensions, env) else {
+            return self.wrong_bounds(&part.dimensions, env);
+        };
         let count = part.values.len() / indexes.len().max(1);
         for (n, index) in indexes.iter().enumerate() {
             let values = part.values.iter().skip(n * count).take(count.max(1)).cloned().collect();
             let text = format!("{}.{}", filled(&part.text, index), name.text);
             self.member(member, Part { text, dimensions: Vec::new(), values, ..part.clone() }, env, all);
+        }
+    }
+
+    /// Reports an array that cannot be, where no array is made that would be reported later.
+    fn wrong_bounds(&mut self, dimensions: &[(Expr, Expr)], env: &Env<'_, 'd>) {
+        for (least, most) in dimensions {
+            let place = least.at.0.to(most.at.0);
+            let problem = match (self.whole(least, env), self.whole(most, env)) {
+                (Some(low), Some(high)) if low > high => {
+                    let what = say!("an array from {low} to {high} has no elements");
+                    Problem::new(&codes::EMPTY_RANGE, place, what)
+                }
+                (Some(_), Some(_)) => {
+                    let what = say!("all arrays together have at most {MOST} elements");
+                    Problem::new(&codes::OUT_OF_RANGE, place, what)
+                }
+                _ => {
+                    let what = say!(
+                        "a bound of an array is a whole number, or a constant that is declared before it"
+                    );
+                    Problem::new(&codes::NOT_CONSTANT, place, what)
+                }
+            };
+            self.once(problem);
         }
     }
 

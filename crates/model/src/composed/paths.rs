@@ -10,7 +10,7 @@ use crate::{
 pub(super) struct Lost;
 
 impl<'d> Composition<'d> {
-    /// The names of a path, each with its indexes.
+    /// The names of a path, each with its indexes as they are written.
     pub(super) fn segments(&self, path: &Path, index: &[Expr], env: &Env<'_, 'd>) -> Vec<Segment> {
         let mut rest = index.iter().cloned();
         let last = path.names.len().saturating_sub(1);
@@ -30,6 +30,13 @@ impl<'d> Composition<'d> {
             last.index.extend(rest);
         }
         all
+    }
+
+    /// Replaces the names in the indexes of some segments, which are those of the statement in hand until then.
+    pub(super) fn indexed(&mut self, segments: &mut [Segment], env: &Env<'_, 'd>) {
+        for e in segments.iter_mut().flat_map(|s| &mut s.index) {
+            self.expr(e, env);
+        }
     }
 
     /// True if a path can begin with the name and lead to a variable.
@@ -203,14 +210,16 @@ impl<'d> Composition<'d> {
 
     /// Replaces the names in an expression.
     pub(super) fn expr(&mut self, e: &mut Expr, env: &Env<'_, 'd>) {
-        struct Each<'a, 'e, 'd>(&'a mut Composition<'d>, &'a Env<'e, 'd>);
-        impl crate::visit_mut::Visitor for Each<'_, '_, '_> {
-            fn expr(&mut self, e: &mut Expr) {
-                self.0.memoryless(e, self.1);
-                self.0.replace(e, self.1, false);
-            }
+        self.memoryless(e, env);
+        match &mut e.kind {
+            ExprKind::Path(_) | ExprKind::Element(..) => self.replace(e, env, false),
+            ExprKind::Unary(_, a) => self.expr(a, env),
+            ExprKind::Binary(_, a, b) => [a, b].into_iter().for_each(|e| self.expr(e, env)),
+            ExprKind::Timer { t1, e, t2 } => [t1, e].into_iter().chain(t2).for_each(|e| self.expr(e, env)),
+            ExprKind::Call(_, args) => args.iter_mut().for_each(|a| self.expr(&mut a.value, env)),
+            ExprKind::List(values) => values.iter_mut().for_each(|(_, e)| self.expr(e, env)),
+            ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => {}
         }
-        crate::visit_mut::expr(e, &mut Each(self, env));
     }
 
     /// Reports an edge or a delay in a function block: these look at a value once in each pass, and a function block
@@ -231,33 +240,33 @@ impl<'d> Composition<'d> {
 
     /// Replaces the names of a variable that gets a value.
     pub(super) fn target(&mut self, e: &mut Expr, env: &Env<'_, 'd>) {
-        if let ExprKind::Element(_, index, _) = &mut e.kind {
-            index.iter_mut().for_each(|i| self.expr(i, env));
-        }
         self.replace(e, env, true);
     }
 
-    /// Replaces a path whose indexes are replaced already.
+    /// Replaces a path and the names in its indexes.
     fn replace(&mut self, e: &mut Expr, env: &Env<'_, 'd>, written: bool) {
-        let found = match self.spot_of(e, env) {
-            Ok(None) => return,
+        let kind = match self.spot_of(e, env) {
             Ok(Some(spot)) => self.plain(spot, written),
             Err(Lost) => None,
+            Ok(None) => {
+                if let ExprKind::Element(_, index, _) = &mut e.kind {
+                    index.iter_mut().for_each(|i| self.expr(i, env));
+                }
+                return;
+            }
         };
-        match found {
-            Some(kind) => e.kind = kind,
-            None => e.kind = ExprKind::Bad,
-        }
+        e.kind = kind.unwrap_or(ExprKind::Bad);
     }
 
-    /// The variable that an expression leads to, if it is a path or an element.
+    /// The variable that a path or an element leads to, with the names in its indexes replaced.
     pub(super) fn spot_of(&mut self, e: &Expr, env: &Env<'_, 'd>) -> Result<Option<Spot<'d>>, Lost> {
         let (path, index, bit) = match &e.kind {
             ExprKind::Path(path) => (path, &[][..], None),
             ExprKind::Element(path, index, bit) => (&**path, index.as_slice(), bit.as_ref()),
             _ => return Ok(None),
         };
-        let segments = self.segments(path, index, env);
+        let mut segments = self.segments(path, index, env);
+        self.indexed(&mut segments, env);
         let spot = self.spot(&segments, env)?;
         Ok(spot.map(|mut spot| {
             spot.tail.extend(bit.map(|b| (**b).clone()));

@@ -238,15 +238,7 @@ impl<'d> Composition<'d> {
         env: &Env<'_, 'd>,
     ) -> Vec<Stmt> {
         if self.is_structure(&target, env) && self.is_structure(&value, env) {
-            for e in [&mut target, &mut value] {
-                if let ExprKind::Element(_, index, _) = &mut e.kind {
-                    index.iter_mut().for_each(|i| self.expr(i, env));
-                }
-            }
-            return match self.copy(&target, &value, at, env) {
-                Ok(list) => list.unwrap_or_default(),
-                Err(_) => Vec::new(),
-            };
+            return self.copy(&target, &value, at, env);
         }
         self.target(&mut target, env);
         self.expr(&mut value, env);
