@@ -178,9 +178,6 @@ impl<'d> Composition<'d> {
             part.dimensions.extend(own);
             return self.parts(ty, part, env, all);
         }
-        if let Some(of) = member.of.as_ref().filter(|of| !self.wrong.contains(&*of.text)) {
-            self.unknown_type(of);
-        }
         part.dimensions.extend(own);
         if self.takes(1, part.at.0) {
             all.push(leaf(member, part));

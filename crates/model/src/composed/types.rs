@@ -36,6 +36,12 @@ impl<'d> Composition<'d> {
         let wrong = |name: &&str| depths.get(name).is_none_or(|d| *d >= DEEP);
         self.wrong = self.types.keys().copied().filter(wrong).collect();
         self.types.retain(|name, _| !wrong(name));
+        let named = composed().flat_map(|c| c.members.iter().chain(&c.inouts)).filter_map(|m| m.of.as_ref());
+        for of in named {
+            if !self.types.contains_key(&*of.text) && !self.wrong.contains(&*of.text) {
+                self.unknown_type(of);
+            }
+        }
     }
 
     fn twice(&mut self, name: &Name, first: Span) {
