@@ -53,7 +53,8 @@ pub fn compile_with(
     let (instances, mut undone) = instantiated(doc);
     let (plain, mut wrong) = decomposed(&instances);
     undone.append(&mut wrong);
-    let asked = Composition::of(&instances).map(|mut types| {
+    let types = if queries.is_empty() { None } else { Composition::of(&instances) };
+    let asked = types.map(|mut types| {
         let mut ask = |query: &Expr| {
             let (query, mut wrong) = types.query(query);
             undone.append(&mut wrong);

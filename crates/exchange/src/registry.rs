@@ -161,14 +161,19 @@ impl Format {
     /// Writes a document, which must have been read without errors; None if the format is not
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
-        self.writer.map(|write| write(&arrays::singled(&decomposed(&instantiated(document).0).0)))
+        self.writer.map(|write| with_plain(document, write))
     }
 
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
-        self.in_dialect
-            .map(|write| write(&arrays::singled(&decomposed(&instantiated(document).0).0), dialect))
+        self.in_dialect.map(|write| with_plain(document, |plain| write(plain, dialect)))
     }
+}
+
+/// Gives a document to a writer as charts and single variables: without parameters, types of its own and arrays.
+fn with_plain<T>(document: &Document, write: impl FnOnce(&Document) -> T) -> T {
+    let charts = instantiated(document).0;
+    write(&arrays::singled(&decomposed(&charts).0))
 }
 
 /// The format with this word.

@@ -45,7 +45,7 @@ enum Around {
     Layout,
     /// A structure.
     Struct,
-    /// A function block, outside of its body.
+    /// The declarations of a function block. Its body is [`Around::Body`].
     Block,
     /// Statements.
     Body,

@@ -200,20 +200,7 @@ pub fn invoke(block: Path, args: Vec<(&str, Expr)>, at: Span) -> Stmt {
 
 /// A variable with only a name and a type.
 pub fn variable(kind: VarKind, name: &str, ty: Type, at: Span) -> VarDecl {
-    VarDecl {
-        kind,
-        names: vec![Name::new(name, at)],
-        array: None,
-        of: None,
-        ty,
-        init: None,
-        address: None,
-        inverted: false,
-        retain: false,
-        safe: None,
-        comment: None,
-        at: at.into(),
-    }
+    VarDecl::new(kind, vec![Name::new(name, at)], ty, at.into())
 }
 
 /// A text on one line, for names and comments.

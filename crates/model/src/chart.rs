@@ -243,6 +243,26 @@ pub struct VarDecl {
     pub at: Place,
 }
 
+impl VarDecl {
+    /// Variables with names and a type alone.
+    pub fn new(kind: VarKind, names: Vec<Name>, ty: Type, at: Place) -> VarDecl {
+        VarDecl {
+            kind,
+            names,
+            array: None,
+            ty,
+            of: None,
+            init: None,
+            address: None,
+            inverted: false,
+            retain: false,
+            safe: None,
+            comment: None,
+            at,
+        }
+    }
+}
+
 /// The role of a chart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum ChartKind {

@@ -79,6 +79,18 @@ pub struct Arg {
 }
 
 impl Expr {
+    /// The value that a variable of the type has without one of its own: FALSE, 0, or the empty text.
+    pub fn zero(ty: Type, at: Place) -> Expr {
+        let literal = match ty {
+            Type::Bool | Type::Fb(_) => Literal::Bool(false),
+            Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),
+            Type::Time => Literal::Time(Nanos::ZERO),
+            Type::String(_) => Literal::Str("".into()),
+            _ => Literal::Int(0, None),
+        };
+        Expr { kind: ExprKind::Literal(literal), at }
+    }
+
     /// True if no part of it is text that could not be read.
     pub fn is_read(&self) -> bool {
         match &self.kind {
@@ -105,10 +117,7 @@ impl ExprKind {
             ExprKind::Element(path, index, None) => {
                 let index: Option<Vec<String>> =
                     index.iter().map(|e| e.kind.whole().map(|n| n.to_string())).collect();
-                let index = index?;
-                let (full, taken) = filled(&path.text(), &index);
-                let rest = index.get(taken..).unwrap_or_default();
-                Some(if rest.is_empty() { full } else { format!("{full}[{}]", rest.join(",")) })
+                Some(element_name(&path.text(), &index?))
             }
             _ => None,
         }
@@ -147,7 +156,16 @@ pub fn element_parts<'e>(path: &Path, index: &'e [Expr]) -> Vec<(Path, &'e [Expr
     parts
 }
 
-/// A name with its indexes, `m[3].x` for `m[].x`, and how many of them it has.
+/// The name of an element as all of G7 has it: `a[1,2]`, and `m[3].t[0]` for the element 3, 0 of `m[].t`.
+pub fn element_name(array: &str, index: &[String]) -> String {
+    let (name, used) = filled(array, index);
+    match index.get(used..) {
+        None | Some([]) => name,
+        Some(rest) => format!("{name}[{}]", rest.join(",")),
+    }
+}
+
+/// Writes indexes into the places that a name has for them: `m[3].x` for `m[].x`. The number tells how many were used.
 pub fn filled(name: &str, index: &[String]) -> (String, usize) {
     let (mut full, mut taken) = (String::new(), 0);
     let mut rest = name;

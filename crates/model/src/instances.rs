@@ -437,20 +437,7 @@ impl<'d> Maker<'d> {
 
 /// A parameter as a constant of its instance.
 fn constant(param: &Param, value: Option<Expr>) -> VarDecl {
-    VarDecl {
-        kind: VarKind::Const,
-        names: vec![param.name.clone()],
-        array: None,
-        of: None,
-        ty: param.ty,
-        init: value,
-        address: None,
-        inverted: false,
-        retain: false,
-        safe: None,
-        comment: None,
-        at: param.name.at,
-    }
+    VarDecl { init: value, ..VarDecl::new(VarKind::Const, vec![param.name.clone()], param.ty, param.name.at) }
 }
 
 /// The first names of all paths of an expression.

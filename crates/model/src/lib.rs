@@ -56,7 +56,7 @@ pub use chart::{
     NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
     Transition, VarDecl, VarKind,
 };
-pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_parts, filled};
+pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_name, element_parts, filled};
 pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;

@@ -100,6 +100,19 @@ pub enum PropertyKind {
 }
 
 impl PropertyKind {
+    /// The same conditions, to be changed.
+    pub fn claims_mut(&mut self) -> Vec<&mut Expr> {
+        match self {
+            PropertyKind::Always(e)
+            | PropertyKind::Never(e)
+            | PropertyKind::Reachable(e)
+            | PropertyKind::Assume(e) => vec![e],
+            PropertyKind::After(a, _, b) | PropertyKind::LeadsTo(a, b) => vec![a, b],
+            PropertyKind::Until(a, b, e) | PropertyKind::Between(a, b, e) => vec![a, b, e],
+            PropertyKind::AtMost(_, list) => list.iter_mut().collect(),
+        }
+    }
+
     /// The conditions in it, in the order of the text.
     pub fn claims(&self) -> impl Iterator<Item = &Expr> {
         let (some, many): ([Option<&Expr>; 3], &[Expr]) = match self {

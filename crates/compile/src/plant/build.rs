@@ -62,20 +62,11 @@ impl At {
         self.stmt(StmtKind::If(vec![(condition, then)], Vec::new()))
     }
 
+    pub(super) fn zero(self, ty: Type) -> Expr {
+        Expr::zero(ty, self.0)
+    }
+
     pub(super) fn declare(self, kind: VarKind, name: &str, ty: Type, init: Option<Expr>) -> VarDecl {
-        VarDecl {
-            kind,
-            names: vec![self.name(name)],
-            array: None,
-            of: None,
-            ty,
-            init,
-            address: None,
-            inverted: false,
-            retain: false,
-            safe: None,
-            comment: None,
-            at: self.0,
-        }
+        VarDecl { init, ..VarDecl::new(kind, vec![self.name(name)], ty, self.0) }
     }
 }

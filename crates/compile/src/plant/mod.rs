@@ -400,7 +400,7 @@ impl<'d> Maker<'d> {
         };
         let step = at.call("@tick", Vec::new());
         let less = at.assign(&left, at.binary(BinaryOp::Sub, at.var(&left), step));
-        let zero = parts::zero(at, Type::Time);
+        let zero = at.zero(Type::Time);
         let mut body = self.rewrite.block(&a.body);
         let again = at.binary(BinaryOp::Add, at.var(&left), wait.clone());
         body.insert(0, at.assign(&left, again));

@@ -106,7 +106,7 @@ impl<'d> Table<'d> {
     /// `T.colour(from, to)`: the colour of the first part there; zero of its type if there is none.
     pub(super) fn seen(&self, at: At, column: &str, range: &(Expr, Expr)) -> Expr {
         let ty = self.columns().into_iter().find(|(name, _)| *name == column).map_or(Type::Int, |(_, ty)| ty);
-        (0..self.places()).rev().fold(zero(at, ty), |rest, place| {
+        (0..self.places()).rev().fold(at.zero(ty), |rest, place| {
             let here = at.var(&self.cell(column, place));
             at.call("SEL", vec![self.stands(at, place, range), rest, here])
         })
@@ -120,7 +120,7 @@ impl<'d> Table<'d> {
     /// `T.last.colour`: the colour of the part that came last; zero of its type if there is none.
     pub(super) fn last(&self, at: At, column: &str) -> Expr {
         let ty = self.columns().into_iter().find(|(name, _)| *name == column).map_or(Type::Int, |(_, ty)| ty);
-        (0..self.places()).fold(zero(at, ty), |rest, place| {
+        (0..self.places()).fold(at.zero(ty), |rest, place| {
             at.call("SEL", vec![self.taken(at, place), rest, at.var(&self.cell(column, place))])
         })
     }
@@ -177,7 +177,7 @@ impl<'d> Table<'d> {
         }
         if let Some(last) = self.places().checked_sub(1) {
             for (column, ty) in self.columns() {
-                body.push(at.assign(&self.cell(column, last), zero(at, ty)));
+                body.push(at.assign(&self.cell(column, last), at.zero(ty)));
             }
         }
         body.push(at.assign(&self.count(), at.binary(BinaryOp::Sub, at.var(&self.count()), at.int(1))));
@@ -196,7 +196,7 @@ impl<'d> Table<'d> {
         let arms = (0..self.places())
             .map(|place| {
                 let empty = self.columns().into_iter();
-                let body = empty.map(|(column, ty)| at.assign(&self.cell(column, place), zero(at, ty)));
+                let body = empty.map(|(column, ty)| at.assign(&self.cell(column, place), at.zero(ty)));
                 g7_model::CaseArm { labels: vec![(at.int(i128::from(place)), None)], body: body.collect() }
             })
             .collect();
@@ -217,7 +217,7 @@ impl<'d> Table<'d> {
         let mut body = vec![at.assign(&self.count(), at.int(0))];
         for place in 0..self.places() {
             for (column, ty) in self.columns() {
-                body.push(at.assign(&self.cell(column, place), zero(at, ty)));
+                body.push(at.assign(&self.cell(column, place), at.zero(ty)));
             }
         }
         body
@@ -235,15 +235,5 @@ impl<'d> Table<'d> {
             })
             .collect();
         vec![at.when(self.taken(at, 0), moves)]
-    }
-}
-
-/// The zero of a type, as a literal.
-pub(super) fn zero(at: At, ty: Type) -> Expr {
-    match ty {
-        Type::Bool => at.bool(false),
-        Type::Real | Type::Lreal => at.real("0.0"),
-        Type::Time => at.expr(g7_model::ExprKind::Literal(g7_model::Literal::Time(g7_model::Nanos::ZERO))),
-        _ => at.int(0),
     }
 }

@@ -8,7 +8,7 @@ use g7_model::{
 };
 
 use super::build::At;
-use super::parts::{Table, zero};
+use super::parts::Table;
 
 /// Names of the functions that only plants have, as the resolver knows them.
 pub(super) const RANDOM: &str = "@random";
@@ -261,7 +261,7 @@ impl Rewrite<'_> {
                 let first = match local.ty {
                     Type::Fb(_) => None,
                     Type::String(_) => Some(at.expr(ExprKind::Literal(Literal::Str("".into())))),
-                    ty => Some(zero(at, ty)),
+                    ty => Some(at.zero(ty)),
                 };
                 out.extend(init.clone().or(first).map(|value| at.assign(&hidden, value)));
                 if self.locals.insert(name.text.clone(), hidden).is_some() {

@@ -16,7 +16,7 @@ use std::collections::HashMap;
 
 use g7_model::{
     Array as Written, Expr as WrittenExpr, ExprKind as Form, Name, Path, Problem, Span, Type, VarDecl, codes,
-    filled, say,
+    element_name, say,
 };
 
 use super::refer::Ref;
@@ -52,9 +52,7 @@ impl Array {
             place /= count;
         }
         all.reverse();
-        let (name, taken) = filled(&self.name, &all);
-        let rest = all.get(taken..).unwrap_or_default();
-        if rest.is_empty() { name } else { format!("{name}[{}]", rest.join(",")) }
+        element_name(&self.name, &all)
     }
 
     /// The element with these indexes, each from 0.

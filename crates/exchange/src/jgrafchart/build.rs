@@ -363,17 +363,10 @@ fn declaration(var: &Var, report: &Report) -> VarDecl {
     let at = report.span(&var.at);
     let name_at = report.span(&name_place(&var.name, &var.at));
     VarDecl {
-        kind: var.kind,
-        names: vec![Name::new(writable(&var.name.text), name_at)],
-        array: None,
-        of: None,
-        ty: var.ty,
         init: var.init.as_ref().map(|v| literal(v, at)).or_else(|| constant_zero(var, at)),
         address: var.channel.as_ref().map(|c| Name::new(writable(c.text.trim()), report.span(&c.at))),
         inverted: var.inverted,
         retain: var.retain,
-        safe: None,
-        comment: None,
-        at: at.into(),
+        ..VarDecl::new(var.kind, vec![Name::new(writable(&var.name.text), name_at)], var.ty, at.into())
     }
 }

@@ -63,20 +63,8 @@ impl<'a> Builder<'_, 'a> {
                 VarSort::Step => return None,
             };
             let at = self.report.span(&attr::head(var.xml));
-            Some(VarDecl {
-                kind,
-                names: vec![Name::new(self.names.var(number), at)],
-                array: None,
-                of: None,
-                ty: var.ty,
-                init: None,
-                address: None,
-                inverted: false,
-                retain: false,
-                safe: None,
-                comment: None,
-                at: at.into(),
-            })
+            let names = vec![Name::new(self.names.var(number), at)];
+            Some(VarDecl::new(kind, names, var.ty, at.into()))
         })
     }
 

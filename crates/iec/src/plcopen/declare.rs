@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{Name, Type, VarDecl, VarKind, say};
+use g7_model::{Expr, Name, Type, VarDecl, VarKind, say};
 
 use super::read::{Pou, Section, SectionKind};
 use super::tree::{Xml, documentation, head, kid, text};
@@ -112,25 +112,18 @@ fn declaration(
     let kind = kind(section, ty, channel(variable), program);
     let mut init = types::initial(variable, ty, report);
     if kind == VarKind::Const && init.is_none() {
-        init = Some(types::zero(ty, at));
+        init = Some(Expr::zero(ty, at.into()));
     }
     if kind == VarKind::Input && section.kind == SectionKind::InOut {
         let what = say!("a variable of both directions; it is an input here");
         report.say(&codes::DIFFERENT, &head(variable), what);
     }
     Some(VarDecl {
-        kind,
-        names: vec![name],
-        array: None,
-        of: None,
-        ty,
         init,
         address: address.filter(|_| kind != VarKind::Const),
-        inverted: false,
         retain: section.retain && kind == VarKind::Var,
-        safe: None,
         comment: documentation(variable).map(Into::into),
-        at: at.into(),
+        ..VarDecl::new(kind, vec![name], ty, at.into())
     })
 }
 

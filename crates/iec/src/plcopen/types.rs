@@ -1,7 +1,7 @@
 //! Types and initial values of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, FbKind, Literal, Nanos, Span, Type, UnaryOp, say};
+use g7_model::{Expr, ExprKind, FbKind, Literal, Span, Type, UnaryOp, say};
 
 use super::read::{duration, type_of};
 use super::tree::{Xml, head, kid, kids, tag, word};
@@ -114,18 +114,6 @@ fn with_type(expr: Expr, ty: Type, at: Span) -> Expr {
         }
         _ => expr,
     }
-}
-
-/// The zero of the type, for constants without a value.
-pub(super) fn zero(ty: Type, at: Span) -> Expr {
-    let literal = match ty {
-        Type::Bool | Type::Fb(_) => Literal::Bool(false),
-        Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),
-        Type::Time => Literal::Time(Nanos::ZERO),
-        Type::String(_) => Literal::Str("".into()),
-        _ => Literal::Int(0, None),
-    };
-    Expr { kind: ExprKind::Literal(literal), at: at.into() }
 }
 
 /// The function block, if the type is one that must be called.

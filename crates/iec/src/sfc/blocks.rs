@@ -4,12 +4,12 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::codes;
-use g7_model::{Arg, ExprKind, Name, Path, Span, Stmt, StmtKind, VarKind, say};
+use g7_model::{Arg, Expr, ExprKind, Name, Path, Span, Stmt, StmtKind, VarKind, say};
 
 use super::unit::{Part, Source, Unit, UnitKind};
 use crate::nodes;
 use crate::report::Report;
-use crate::st::{Section, Variable, zero};
+use crate::st::{Section, Variable};
 use g7_model::visit_mut::{self, Use, Visitor};
 
 /// The deepest nesting of blocks.
@@ -229,7 +229,7 @@ impl Expander<'_> {
         }
         for temp in vars.iter().filter(|v| v.section == Section::Temp && v.unknown.is_none()) {
             let Some(own) = temp.decl.names.first() else { continue };
-            let value = temp.decl.init.clone().unwrap_or_else(|| zero(temp.decl.ty, at.into()));
+            let value = temp.decl.init.clone().unwrap_or_else(|| Expr::zero(temp.decl.ty, at.into()));
             list.push(nodes::assign(variable(&own.text), value, at));
         }
         let own = vars

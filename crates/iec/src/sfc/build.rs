@@ -407,21 +407,8 @@ fn upper(variable: &Variable) -> String {
 
 /// Declares a value of an enumeration as a constant.
 fn enumeration(name: &Name, number: i128) -> VarDecl {
-    let at = name.at;
-    VarDecl {
-        kind: VarKind::Const,
-        names: vec![name.clone()],
-        array: None,
-        of: None,
-        ty: Type::Int,
-        init: Some(Expr { kind: ExprKind::Literal(Literal::Int(number, None)), at }),
-        address: None,
-        inverted: false,
-        retain: false,
-        safe: None,
-        comment: None,
-        at,
-    }
+    let init = Some(Expr { kind: ExprKind::Literal(Literal::Int(number, None)), at: name.at });
+    VarDecl { init, ..VarDecl::new(VarKind::Const, vec![name.clone()], Type::Int, name.at) }
 }
 
 /// Some tools allow a number as a condition: it is true unless it is 0.

@@ -1,7 +1,7 @@
 //! Declarations of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Place, Problem, Type, VarDecl, VarKind, say};
+use g7_model::{Expr, ExprKind, Name, Path, Place, Problem, Type, VarDecl, VarKind, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -317,21 +317,14 @@ impl Maker<'_> {
         }
         let kind = self.kind(ty);
         if kind == VarKind::Const && value.is_none() && unknown.is_none() {
-            value = Some(zero(ty, self.at));
+            value = Some(Expr::zero(ty, self.at));
         }
         let decl = VarDecl {
-            kind,
-            names: vec![name.clone()],
-            array: None,
-            of: None,
-            ty,
             init: value,
             address: self.address.clone().filter(|_| kind != VarKind::Const),
-            inverted: false,
             retain: self.head.retain && kind == VarKind::Var,
-            safe: None,
             comment: self.comment.clone(),
-            at: self.at,
+            ..VarDecl::new(kind, vec![name.clone()], ty, self.at)
         };
         self.found.push(Variable { section: self.head.section, decl, unknown });
         problem
@@ -417,16 +410,4 @@ impl Maker<'_> {
 
 fn path(name: &str, at: Place) -> Expr {
     Expr { kind: ExprKind::Path(Path { names: vec![Name { text: name.into(), at }] }), at }
-}
-
-/// The initial value of a variable without a written one.
-pub(crate) fn zero(ty: Type, at: Place) -> Expr {
-    let literal = match ty {
-        Type::Bool => Literal::Bool(false),
-        Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),
-        Type::Time => Literal::Time(Nanos::ZERO),
-        Type::String(_) => Literal::Str("".into()),
-        _ => Literal::Int(0, None),
-    };
-    Expr { kind: ExprKind::Literal(literal), at }
 }

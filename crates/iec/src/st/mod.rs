@@ -34,7 +34,7 @@ use crate::report::Report;
 /// Prints an expression as an operand of a list or a contact of a rung.
 pub type Spelling<'a> = &'a dyn Fn(&Expr) -> String;
 
-pub(crate) use decl::{Section, Variable, zero};
+pub(crate) use decl::{Section, Variable};
 pub(crate) use lex::Kind;
 pub(crate) use parse::Parser;
 pub use parse::Places;

@@ -180,7 +180,7 @@ impl Writer<'_> {
                     _ => Type::Bool,
                 };
                 let text = inner.converted(ty).within(8);
-                // matiec does not read NOT NOT.
+                // matiec refuses `NOT NOT a`.
                 let text =
                     if text.starts_with("NOT ") { format!("NOT ({text})") } else { format!("NOT {text}") };
                 Text { text, ty: Ty::Known(ty), strength: 8 }

@@ -351,7 +351,7 @@ impl<'d> Lower<'d> {
                 let text = self.fresh(at.program, &format!("{owner}_{}", name.text), local.ty, name.at.0);
                 let init = match &local.init {
                     Some(e) => self.expr(e, at),
-                    None => crate::st::zero(local.ty, name.at),
+                    None => Expr::zero(local.ty, name.at),
                 };
                 list.push(nodes::assign(nodes::name(&[&text], name.at.0), init, name.at.0));
                 inner.locals.push((name.text.clone(), text));

@@ -27,7 +27,7 @@ pub struct Composition<'d> {
     pub(super) charts: HashMap<&'d str, Scope<'d>>,
     /// The transition sections of the file.
     pub(super) sections: HashSet<&'d str>,
-    /// The types that cannot be; that is reported.
+    /// The types that stand in themselves or too deep in each other. They are reported already.
     pub(super) wrong: HashSet<&'d str>,
     /// The types that hold a function block, their own or one of the standard.
     pub(super) blocks: HashSet<&'d str>,
@@ -61,7 +61,7 @@ pub(super) struct Spot<'d> {
     pub(super) own: Vec<Expr>,
     pub(super) decl: &'d VarDecl,
     pub(super) of: Option<&'d Composed>,
-    /// True for what only the function block itself can write.
+    /// True if only the function block itself can write it.
     pub(super) inner: bool,
     /// The names behind a variable: a bit, or a member of a function block of the standard.
     pub(super) tail: Vec<Name>,
@@ -116,11 +116,13 @@ impl<'d> Composition<'d> {
     /// An expression that stands outside of all charts, with plain names.
     pub fn query(&mut self, e: &Expr) -> (Expr, Vec<Problem>) {
         let mut e = e.clone();
+        // Those of the types are told with the document.
+        self.problems.clear();
         self.expr(&mut e, &Env::outside());
         (e, std::mem::take(&mut self.problems))
     }
 
-    /// The one type of a variable, if it has one that the file declares.
+    /// The type of a variable, if it is one that the file declares.
     pub(super) fn type_of(&self, v: &VarDecl) -> Option<&'d Composed> {
         self.types.get(&*v.of.as_ref()?.text).copied()
     }
@@ -177,8 +179,14 @@ pub(super) enum Env<'e, 'd> {
 }
 
 impl<'e, 'd> Env<'e, 'd> {
+    /// The names of the file alone.
     pub(super) fn outside() -> Env<'e, 'd> {
-        Env::Outer { chart: None, locals: Vec::new(), uncallable: None }
+        Env::of(None)
+    }
+
+    /// The names of a chart and of the file.
+    pub(super) fn of(chart: Option<&'e str>) -> Env<'e, 'd> {
+        Env::Outer { chart, locals: Vec::new(), uncallable: None }
     }
 
     /// The chart round it all, and the local variables there.
@@ -197,13 +205,6 @@ impl<'e, 'd> Env<'e, 'd> {
     }
 }
 
-/// From the first to the last of some names.
-pub(super) fn across(names: &[Name]) -> Span {
-    match (names.first(), names.last()) {
-        (Some(first), Some(last)) => first.at.0.to(last.at.0),
-        _ => Span::default(),
-    }
-}
 /// True if an initial value is that of a structure, or a list of such.
 pub(super) fn has_fields(e: &Expr) -> bool {
     match &e.kind {

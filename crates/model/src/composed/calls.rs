@@ -176,7 +176,7 @@ impl<'d> Composition<'d> {
         let inner = Env::Block { instance: spot, inouts, outer: env };
         match returns::without(body.block().statements.clone()) {
             Ok(statements) => {
-                // The names of the caller's loops mean other variables in the body.
+                // The body does not see the loop variables of its caller.
                 let loops = std::mem::take(&mut self.loops);
                 list.extend(self.statements(statements, &inner));
                 self.loops = loops;

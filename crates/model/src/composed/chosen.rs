@@ -15,7 +15,7 @@ pub(super) struct Known<'n> {
 }
 
 impl<'n> Known<'n> {
-    /// The variable in an index, where the index has this value: `i` is 2 where `i + 1` is 3.
+    /// Solves an index for its variable: if the index `i + 1` has the value 3, `i` is 2.
     pub(super) fn of(index: &'n Expr, value: i128) -> Option<Known<'n>> {
         match &index.kind {
             ExprKind::Path(path) => match path.names.as_slice() {

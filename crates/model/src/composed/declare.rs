@@ -3,8 +3,8 @@
 use super::base::{Composition, Env, MOST, has_fields, is_local};
 use super::paths::filled;
 use crate::{
-    Arg, Array, Composed, Expr, ExprKind, Literal, Local, Name, Nanos, Path, Place, Problem, Stmt, StmtKind,
-    Type, VarDecl, VarKind, codes, say, visit_mut,
+    Arg, Array, Composed, Expr, ExprKind, Literal, Local, Name, Path, Place, Problem, Stmt, StmtKind,
+    VarDecl, VarKind, codes, say, visit_mut,
 };
 
 /// A part of a variable whose members are declared.
@@ -14,7 +14,8 @@ struct Part<'v> {
     text: String,
     /// The bounds of the indexes.
     dimensions: Vec<(Expr, Expr)>,
-    /// The value of each element, one without dimensions; none where it is left out.
+    /// The value of each element, in the order of the indexes; one value if there are no dimensions. None where the
+    /// author gives no value.
     values: Vec<Option<Expr>>,
     kind: VarKind,
     retain: bool,
@@ -24,7 +25,7 @@ struct Part<'v> {
 }
 
 impl<'d> Composition<'d> {
-    /// The declarations that stand for one.
+    /// The declarations of the members of a variable; other variables keep their declaration.
     pub(super) fn declared(&mut self, mut v: VarDecl, env: &Env<'_, 'd>) -> Vec<VarDecl> {
         for e in v.init.iter_mut().chain(&mut v.safe).filter(|e| !has_fields(e)) {
             self.expr(e, env);
@@ -184,7 +185,8 @@ impl<'d> Composition<'d> {
         }
     }
 
-    /// The value of a member in each element of a part; for an array those of its elements, one behind the other.
+    /// The value of a member in each element of a part. If the member is an array, the values of its elements follow one
+    /// another.
     fn fields(
         &mut self,
         ty: &Composed,
@@ -233,7 +235,7 @@ impl<'d> Composition<'d> {
         e
     }
 
-    /// The values of the elements of an array, for each of some wholes.
+    /// The values of the elements of an array; `wholes` are the lists that the author wrote, one for each array.
     fn values(
         &mut self,
         own: &[(Expr, Expr)],
@@ -405,10 +407,10 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
     let init = match part.dimensions.is_empty() {
         true => {
             let value = part.values.into_iter().next().flatten();
-            value.or_else(|| constant.then(|| zero(member.ty, part.at)))
+            value.or_else(|| constant.then(|| Expr::zero(member.ty, part.at)))
         }
         false => list.then(|| {
-            let zero = zero(member.ty, part.at);
+            let zero = Expr::zero(member.ty, part.at);
             let values = part.values.into_iter().map(|v| (1, v.unwrap_or_else(|| zero.clone()))).collect();
             Expr { kind: ExprKind::List(values), at: part.at }
         }),
@@ -416,59 +418,32 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
     let array =
         (!part.dimensions.is_empty()).then(|| Box::new(Array { dimensions: part.dimensions, at: part.at }));
     VarDecl {
-        kind: part.kind,
-        names: vec![Name { text: part.text.into(), at: part.at }],
         array,
-        ty: member.ty,
-        of: None,
         init,
-        address: None,
-        inverted: false,
         retain: part.retain && part.kind == VarKind::Var,
-        safe: None,
         comment: member.comment.clone().or_else(|| part.whole.comment.clone()),
-        at: part.whole.at,
+        ..VarDecl::new(
+            part.kind,
+            vec![Name { text: part.text.into(), at: part.at }],
+            member.ty,
+            part.whole.at,
+        )
     }
 }
 
 /// The local variables of a declaration in a body as members.
 pub(super) fn local_member(local: &Local) -> VarDecl {
-    VarDecl {
-        kind: VarKind::Var,
-        names: local.names.clone(),
-        array: None,
-        ty: local.ty,
-        of: None,
-        init: None,
-        address: None,
-        inverted: false,
-        retain: false,
-        safe: None,
-        comment: None,
-        at: local.at,
-    }
+    VarDecl::new(VarKind::Var, local.names.clone(), local.ty, local.at)
 }
 
 /// The assignments of their initial values to the local variables of a declaration.
 pub(super) fn local_values(local: &Local) -> Vec<Stmt> {
-    let value = local.init.clone().unwrap_or_else(|| zero(local.ty, local.at));
+    let value = local.init.clone().unwrap_or_else(|| Expr::zero(local.ty, local.at));
     let assigned = |name: &Name| {
         let target = Expr { kind: ExprKind::Path(Path { names: vec![name.clone()] }), at: name.at };
         Stmt { kind: StmtKind::Assign { target, value: value.clone() }, at: local.at }
     };
     local.names.iter().map(assigned).collect()
-}
-
-/// The value of a type whose bits are all zero.
-fn zero(ty: Type, at: Place) -> Expr {
-    let literal = match ty {
-        Type::Bool => Literal::Bool(false),
-        Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),
-        Type::Time => Literal::Time(Nanos::default()),
-        Type::String(_) => Literal::Str("".into()),
-        _ => Literal::Int(0, None),
-    };
-    Expr { kind: ExprKind::Literal(literal), at }
 }
 
 fn number(n: i128, at: Place) -> Expr {

@@ -31,7 +31,7 @@ use crate::{Body, Composed, Document, Item, Problem};
 
 pub use base::Composition;
 
-/// The document with plain variables, and the problems of its types and calls.
+/// Replaces the structures and function blocks of a document. Returns the problems of types and calls as well.
 pub fn decomposed(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
     let plain = without_locals(document);
     match Composition::of(&plain).map(|made| made.document(&plain)) {

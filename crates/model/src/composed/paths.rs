@@ -1,12 +1,12 @@
 //! The meaning of a path: `m[i].t[j].x` as the one name `m[].t[].x` with its indexes.
 
-use super::base::{Composition, Env, Segment, Spot, across, is_local};
+use super::base::{Composition, Env, Segment, Spot, is_local};
 use crate::{
     BinaryOp, Composed, Expr, ExprKind, Index, Literal, Name, Path, Place, Problem, Span, UnaryOp, VarDecl,
     VarKind, codes, instance_of, say, slot_of,
 };
 
-/// A path that leads nowhere; the problem is reported.
+/// A path that leads to no variable. Its problem has been reported.
 pub(super) struct Lost;
 
 impl<'d> Composition<'d> {
@@ -366,8 +366,10 @@ fn number_of(index: Index<'_>, at: Place) -> Expr {
 
 /// The place of a whole path.
 pub(super) fn at_of(segments: &[Segment]) -> Span {
-    let names: Vec<Name> = segments.iter().map(|s| s.name.clone()).collect();
-    across(&names)
+    match (segments.first(), segments.last()) {
+        (Some(first), Some(last)) => first.name.at.0.to(last.name.at.0),
+        _ => Span::default(),
+    }
 }
 
 /// The name of a path that has no other, if an expression is such a path.

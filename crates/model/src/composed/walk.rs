@@ -3,12 +3,12 @@
 use super::base::{Composition, Env};
 use super::paths::one_name;
 use crate::{
-    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Path, Problem,
-    PropertyKind, Said, Stmt, StmtKind, Target, Work, codes, say,
+    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Path, Problem, Said,
+    Stmt, StmtKind, Target, Work, codes, say,
 };
 
 impl<'d> Composition<'d> {
-    /// The document with plain variables, and the problems of its types and calls.
+    /// Replaces the structures and function blocks of a document. Returns the problems of types and calls as well.
     pub(super) fn document(mut self, document: &'d Document) -> (Document, Vec<Problem>) {
         let mut items = Vec::new();
         for item in &document.items {
@@ -30,7 +30,7 @@ impl<'d> Composition<'d> {
                     Item::Action(a) => self.body_of(&mut a.body, None),
                     Item::Section(s) => self.block(&mut s.body, None, Some(say!("a transition section"))),
                     Item::Pre(body, _) | Item::Post(body, _) => self.body_of(body, None),
-                    Item::Prove(p) => self.claims(&mut p.kind),
+                    Item::Prove(p) => p.kind.claims_mut().into_iter().for_each(|e| self.expr(e, &outside)),
                     _ => {}
                 }
                 items.push(own);
@@ -43,7 +43,7 @@ impl<'d> Composition<'d> {
         let mut items = Vec::new();
         for item in &chart.items {
             if let ChartItem::Var(v) = item {
-                let declared = self.declared(v.clone(), &in_chart(Some(name), Vec::new(), None));
+                let declared = self.declared(v.clone(), &Env::of(Some(name)));
                 items.extend(declared.into_iter().map(ChartItem::Var));
                 continue;
             }
@@ -51,7 +51,7 @@ impl<'d> Composition<'d> {
             match &mut own {
                 ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, name)),
                 ChartItem::Transition(t) => {
-                    self.expr(&mut t.receptivity, &in_chart(Some(name), Vec::new(), None));
+                    self.expr(&mut t.receptivity, &Env::of(Some(name)));
                     t.on_clearing.iter_mut().for_each(|b| self.block(b, Some(name), None));
                 }
                 ChartItem::Pre(body, _) | ChartItem::Post(body, _) => self.body_of(body, Some(name)),
@@ -74,24 +74,8 @@ impl<'d> Composition<'d> {
         }
     }
 
-    fn claims(&mut self, kind: &mut PropertyKind) {
-        let env = Env::outside();
-        let claims: Vec<&mut Expr> = match kind {
-            PropertyKind::Always(e)
-            | PropertyKind::Never(e)
-            | PropertyKind::Reachable(e)
-            | PropertyKind::Assume(e) => {
-                vec![e]
-            }
-            PropertyKind::After(a, _, b) | PropertyKind::LeadsTo(a, b) => vec![a, b],
-            PropertyKind::Until(a, b, e) | PropertyKind::Between(a, b, e) => vec![a, b, e],
-            PropertyKind::AtMost(_, list) => list.iter_mut().collect(),
-        };
-        claims.into_iter().for_each(|e| self.expr(e, &env));
-    }
-
     fn action(&mut self, action: &mut Action, chart: &str) {
-        let env = in_chart(Some(chart), Vec::new(), None);
+        let env = Env::of(Some(chart));
         match &mut action.kind {
             ActionKind::Qualified { time, target, condition, .. } => {
                 time.iter_mut().chain(condition).for_each(|e| self.expr(e, &env));
@@ -119,7 +103,7 @@ impl<'d> Composition<'d> {
             Target::Work(work) => return self.work(work, chart),
             Target::Direct(..) => return,
         };
-        self.target(&mut e, &in_chart(Some(chart), Vec::new(), None));
+        self.target(&mut e, &Env::of(Some(chart)));
         *target = match e.kind {
             ExprKind::Path(path) => Target::Path(path),
             _ => Target::Element(Box::new(e)),
@@ -131,7 +115,7 @@ impl<'d> Composition<'d> {
             Work::Block(block) => self.block(block, Some(chart), None),
             Work::Single(s) => {
                 let at = s.at;
-                let list = self.statements(vec![(**s).clone()], &in_chart(Some(chart), Vec::new(), None));
+                let list = self.statements(vec![(**s).clone()], &Env::of(Some(chart)));
                 *work = match <[Stmt; 1]>::try_from(list) {
                     Ok([only]) if matches!(only.kind, StmtKind::Assign { .. } | StmtKind::Call(..)) => {
                         Work::Single(Box::new(only))
@@ -159,12 +143,12 @@ impl<'d> Composition<'d> {
 
     fn block(&mut self, block: &mut Block, chart: Option<&str>, uncallable: Option<Said>) {
         let locals = block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone()).collect();
-        let env = in_chart(chart, locals, uncallable);
+        let env = Env::Outer { chart, locals, uncallable };
         block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.expr(e, &env));
         block.statements = self.statements(std::mem::take(&mut block.statements), &env);
     }
 
-    /// The statements that stand for some.
+    /// Replaces names and calls in statements.
     pub(super) fn statements(&mut self, list: Vec<Stmt>, env: &Env<'_, 'd>) -> Vec<Stmt> {
         list.into_iter().flat_map(|s| self.statement(s, env)).collect()
     }
@@ -262,9 +246,4 @@ impl<'d> Composition<'d> {
             self.problems.push(problem.help(say!("write `var name : {name}`")));
         }
     }
-}
-
-/// The names of a chart, or of the file.
-fn in_chart<'e, 'd>(chart: Option<&'e str>, locals: Vec<Box<str>>, uncallable: Option<Said>) -> Env<'e, 'd> {
-    Env::Outer { chart, locals, uncallable }
 }

@@ -11,6 +11,9 @@ const OUTPUT: Word = Word::reserved(
     "output",
     ["a value for the plant", "une valeur pour le procédé", "um valor para o processo"],
 );
+const VAR: Word =
+    Word::reserved("var", ["an internal variable", "une variable interne", "uma variável interna"]);
+const CONST: Word = Word::reserved("const", ["a constant", "une constante", "uma constante"]);
 const SECTION: Word = Word::reserved(
     "transition",
     [
@@ -41,8 +44,8 @@ const POST: Word = Word::free(
 pub const FILE: &[Word] = &[
     INPUT,
     OUTPUT,
-    Word::reserved("var", ["an internal variable", "une variable interne", "uma variável interna"]),
-    Word::reserved("const", ["a constant", "une constante", "uma constante"]),
+    VAR,
+    CONST,
     Word::reserved("chart", ["a partial chart", "un grafcet partiel", "um grafcet parcial"]),
     Word::reserved(
         "macrochart",
@@ -121,8 +124,8 @@ pub const BLOCK: &[Word] = &[
             "um parâmetro que representa uma variável de quem chama",
         ],
     ),
-    Word::reserved("var", ["an internal variable", "une variable interne", "uma variável interna"]),
-    Word::reserved("const", ["a constant", "une constante", "uma constante"]),
+    VAR,
+    CONST,
     Word::free(
         "body",
         ["the statements of a call", "les instructions d’un appel", "as instruções de uma chamada"],

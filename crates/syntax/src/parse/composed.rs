@@ -193,7 +193,7 @@ impl Parser<'_> {
     }
 }
 
-/// Words of the standard in the place of a type that have no meaning there.
+/// Words of IEC 61131-3 that stand for types which this language does not have, or begin a type.
 const FOREIGN: [&str; 8] = ["ARRAY", "STRUCT", "DATE", "TOD", "DT", "TIME_OF_DAY", "DATE_AND_TIME", "LTIME"];
 
 /// The type that was probably meant by a word of another language.
