@@ -4,6 +4,7 @@ use std::collections::HashMap;
 
 use super::base::{Composition, Env, Segment, Spot};
 use super::chosen::Known;
+use super::declare::bounds;
 use super::paths::{Lost, at_of};
 use super::returns;
 use crate::{
@@ -149,8 +150,9 @@ impl<'d> Composition<'d> {
             given.push(&parameter.name.text);
             let segment = Segment { name: parameter.name.clone(), index: Vec::new() };
             if parameter.inout {
-                inouts
-                    .extend(self.alias(parameter, &arg.value, env).map(|path| (&*parameter.name.text, path)));
+                inouts.extend(
+                    self.alias(of, parameter, &arg.value, env).map(|path| (&*parameter.name.text, path)),
+                );
             } else if let Ok(inner) = self.step(spot.clone(), &segment) {
                 let inner = Spot { at: arg.value.at.0, ..inner };
                 if arg.output {
@@ -267,7 +269,13 @@ impl<'d> Composition<'d> {
     }
 
     /// The variable for which a parameter stands: its path, with indexes that are numbers.
-    fn alias(&mut self, parameter: Parameter<'d>, value: &Expr, env: &Env<'_, 'd>) -> Option<Vec<Segment>> {
+    fn alias(
+        &mut self,
+        of: &Composed,
+        parameter: Parameter<'d>,
+        value: &Expr,
+        env: &Env<'_, 'd>,
+    ) -> Option<Vec<Segment>> {
         let (path, index) = match &value.kind {
             ExprKind::Path(path) => (path, &[][..]),
             ExprKind::Element(path, index, None) => (&**path, index.as_slice()),
@@ -284,16 +292,20 @@ impl<'d> Composition<'d> {
             e.kind = ExprKind::Literal(crate::Literal::Int(n, None));
         }
         let Ok(Some(spot)) = self.spot(&segments, env) else { return self.no_variable(parameter, value) };
-        let dimensions = |v: &VarDecl| v.array.as_ref().map_or(0, |a| a.dimensions.len());
+        let dimensions = spot.decl.array.as_ref().map_or(&[][..], |a| &a.dimensions);
+        let left = dimensions.get(spot.own.len()..).unwrap_or_default();
+        let wanted = bounds(of, parameter.decl);
+        let equal = |a: &Expr, b: &Expr| self.whole(a, env) == self.whole(b, env);
+        let fits = left.len() == wanted.len()
+            && left.iter().zip(&wanted).all(|(a, b)| equal(&a.0, &b.0) && equal(&a.1, &b.1));
         let same = match (spot.of, self.type_of(parameter.decl)) {
             (Some(a), Some(b)) => a.name.text == b.name.text,
             (None, None) => spot.decl.ty == parameter.decl.ty,
             _ => false,
         };
-        let given = dimensions(spot.decl).checked_sub(spot.own.len());
-        if !same || given != Some(dimensions(parameter.decl)) || spot.decl.kind == VarKind::Const {
+        if !same || !fits || spot.own.len() > dimensions.len() || spot.decl.kind == VarKind::Const {
             let what = say!("`{}` does not fit the parameter `{}`", spot.shown(), parameter.name.text);
-            let help = say!("it stands for a variable of the same type");
+            let help = say!("it stands for a variable of the same type and bounds");
             let problem = Problem::new(&codes::WRONG_TYPE, value.at.0, what).help(help);
             self.once(problem.related(parameter.decl.at.0, say!("declared here")));
             return None;

@@ -366,7 +366,7 @@ impl<'d> Composition<'d> {
 }
 
 /// The bounds of a member, with the values of constants of its type.
-fn bounds(ty: &Composed, member: &VarDecl) -> Vec<(Expr, Expr)> {
+pub(super) fn bounds(ty: &Composed, member: &VarDecl) -> Vec<(Expr, Expr)> {
     let mut all = member.array.as_ref().map_or(Vec::new(), |a| a.dimensions.clone());
     for (least, most) in &mut all {
         visit_mut::expr(least, &mut Constants(ty));
