@@ -10,6 +10,7 @@ use std::sync::Arc;
 use g7_engine::{Code, Program};
 use g7_model::composed::{Composition, decomposed};
 use g7_model::instances::instantiated;
+use g7_model::named::{Held, declared, held};
 use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
@@ -50,24 +51,46 @@ pub fn compile_with(
     profile: Option<ProfileName>,
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
-    let (instances, mut undone) = instantiated(doc);
-    let (plain, mut wrong) = decomposed(&instances);
+    let (typed, mut undone) = declared(doc);
+    let (instances, mut wrong) = instantiated(&typed);
     undone.append(&mut wrong);
-    let types = if queries.is_empty() { None } else { Composition::of(&instances) };
-    let asked = types.map(|mut types| {
-        let mut ask = |query: &Expr| {
-            let (query, mut wrong) = types.query(query);
-            undone.append(&mut wrong);
-            query
-        };
-        queries.iter().map(&mut ask).collect::<Vec<_>>()
-    });
-    let (compiled, problems) =
-        compile_charts(&instances, &plain, undone, profile, asked.as_deref().unwrap_or(queries));
+    let (composed, mut wrong) = decomposed(&instances);
+    undone.append(&mut wrong);
+    let (plain, mut wrong) = held(&composed);
+    undone.append(&mut wrong);
+    let (asked, mut wrong) = asked(&instances, &composed, queries);
+    undone.append(&mut wrong);
+    let (compiled, problems) = compile_charts(&instances, &plain, undone, profile, &asked);
     match (&instances, &plain) {
         (Cow::Borrowed(_), Cow::Borrowed(_)) => (compiled, problems),
         _ => (compiled, once(doc, problems)),
     }
+}
+
+/// The questions with plain names and numbers.
+fn asked<'q>(
+    instances: &Document,
+    composed: &Document,
+    queries: &'q [Expr],
+) -> (Cow<'q, [Expr]>, Vec<Problem>) {
+    let (mut asked, mut problems) = (Cow::Borrowed(queries), Vec::new());
+    let none = queries.is_empty();
+    let mut types = if none { None } else { Composition::of(instances) };
+    let mut held = if none { None } else { Held::of(composed) };
+    if types.is_none() && held.is_none() {
+        return (asked, problems);
+    }
+    for query in asked.to_mut() {
+        if let Some((new, mut wrong)) = types.as_mut().map(|t| t.query(query)) {
+            *query = new;
+            problems.append(&mut wrong);
+        }
+        if let Some((new, mut wrong)) = held.as_mut().map(|h| h.query(query)) {
+            *query = new;
+            problems.append(&mut wrong);
+        }
+    }
+    (asked, problems)
 }
 
 /// A problem of a chart with parameters is told once, not for each instance; so is one of a function block.

@@ -156,7 +156,7 @@ impl<'d> Single<'d> {
                     names: vec![Name::new(text.clone(), name.at.0)],
                     array: None,
                     of: None,
-                    init: given.get(place).map(|e| (*e).clone()),
+                    init: given.get(place).map(|e| (*e).clone()).or_else(|| v.usual.as_deref().cloned()),
                     ..v.clone()
                 });
             }

@@ -5,6 +5,7 @@
 use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
 use g7_model::composed::decomposed;
+use g7_model::named::{declared, held};
 use g7_model::instances::instantiated;
 use g7_model::{Document, FileId, Problem};
 
@@ -172,8 +173,10 @@ impl Format {
 
 /// Gives a document to a writer as charts and single variables: without parameters, types of its own and arrays.
 fn with_plain<T>(document: &Document, write: impl FnOnce(&Document) -> T) -> T {
-    let charts = instantiated(document).0;
-    write(&arrays::singled(&decomposed(&charts).0))
+    let typed = declared(document).0;
+    let charts = instantiated(&typed).0;
+    let plain = decomposed(&charts).0;
+    write(&arrays::singled(&held(&plain).0))
 }
 
 /// The format with this word.

@@ -10,7 +10,7 @@ use g7_syntax::{Token, TokenKind};
 
 use crate::file::{File, floor};
 use crate::names::{Meaning, names, sort};
-use crate::tables::{declaration, member_declaration};
+use crate::tables::{declaration, member_declaration, type_declaration};
 
 /// The possible words, and the place at which the word begins.
 #[derive(Debug)]
@@ -257,7 +257,16 @@ impl Place<'_> {
             choice(&c.name.text, "type", told, &g7_syntax::show_name(&c.name.text))
         };
         let items = self.document.items.iter();
-        items.filter_map(|i| if let Item::Composed(c) = i { Some(shown(c)) } else { None }).collect()
+        let one = |item| match item {
+            &Item::Composed(ref c) => Some(shown(c)),
+            Item::Type(t) => {
+                let name = t.names.first()?;
+                let told = t.comment.as_deref().map_or_else(|| type_declaration(t).into(), str::to_owned);
+                Some(choice(&name.text, "type", Said::foreign(told), &g7_syntax::show_name(&name.text)))
+            }
+            _ => None,
+        };
+        items.filter_map(one).collect()
     }
 
     /// The names before the dot, joined by dots, without their indexes.
@@ -350,6 +359,8 @@ impl Place<'_> {
                 | Meaning::Step(..)
                 | Meaning::Chart(_)
                 | Meaning::Type(_)
+                | Meaning::Named(_)
+                | Meaning::Value(_)
                 | Meaning::Member(_)
                 | Meaning::Other(..) => {}
             }
@@ -406,7 +417,11 @@ impl Place<'_> {
                     let told = Said::foreign(member_declaration(&m));
                     own.push(choice(name, "variable", told, &shown));
                 }
-                Meaning::Member(_) | Meaning::Type(_) => {}
+                Meaning::Member(_) | Meaning::Type(_) | Meaning::Named(_) => {}
+                Meaning::Value(t) => {
+                    let told = Said::foreign(type_declaration(t));
+                    found.push(choice(name, "value", told, &shown));
+                }
                 Meaning::Variable(v, None) => found.push(choice(name, "variable", declared(name, v), &shown)),
                 Meaning::Variable(v, Some(c)) => {
                     let inside = here.as_ref() == Some(&c.name.text);

@@ -8,7 +8,7 @@ use g7_model::{Language, Problem, Qualifier, Said, StandardFunction, Type, say, 
 use crate::file::File;
 use crate::names::{Meaning, Named, declared, meaning, sort, word_at};
 use crate::rules;
-use crate::tables::{declaration, kind, member_declaration};
+use crate::tables::{declaration, kind, member_declaration, type_declaration};
 
 /// An explanation of a piece of the text.
 #[derive(Debug)]
@@ -117,6 +117,11 @@ fn describe(n: &Named<'_>, language: Language) -> String {
             let shown = Member::all(c).filter(|m| !matches!(m.declared, Declared::Local(_)));
             let members = shown.map(|m| format!("  \n`{}`", member_declaration(&m)));
             std::iter::once(head).chain(members).collect()
+        }
+        Meaning::Named(t) => with(Said::foreign(format!("`{}`", type_declaration(t))), t.comment.as_deref()),
+        Meaning::Value(t) => {
+            let of = t.names.first().map_or("", |n| &*n.text);
+            with(say!("value `{name}` of `{of}`"), t.comment.as_deref())
         }
         Meaning::Member(m) => {
             let head = say!("`{}` of `{}`", member_declaration(&m), m.of.name.text);

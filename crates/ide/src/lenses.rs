@@ -47,6 +47,7 @@ pub fn lenses(readable: &Readable<'_>) -> Vec<Lens> {
             | Item::Var(_)
             | Item::Instance(_)
             | Item::Composed(_)
+            | Item::Type(_)
             | Item::Action(_)
             | Item::Section(_)
             | Item::Function(_)

@@ -1,7 +1,7 @@
 //! The names that a document defines, and their meaning.
 
 use g7_compile::Definition;
-use g7_compile::references::Member;
+use g7_compile::references::{Member, values};
 use g7_model::{
     Chart, ChartItem, Composed, Document, InstanceNames, Item, Name, PlantItem, Said, Span, Step, VarDecl,
     say,
@@ -21,6 +21,10 @@ pub enum Meaning<'d> {
     Type(&'d Composed),
     /// A member, a parameter or a variable of one.
     Member(Member<'d>),
+    /// An enumeration, a type with bounds, or another name for a type.
+    Named(&'d VarDecl),
+    /// A value of this enumeration.
+    Value(&'d VarDecl),
     /// A named action, function, section, plant, or part of a plant: the word for its kind, and its
     /// comment.
     Other(&'static str, Option<&'d str>),
@@ -57,6 +61,11 @@ pub fn names(document: &Document) -> Vec<Named<'_>> {
                     meaning: Meaning::Member(m),
                     scope,
                 }));
+            }
+            Item::Type(t) => {
+                let one = |name, meaning| Named { name, meaning, scope: None };
+                all.extend(t.names.first().map(|name| one(name, Meaning::Named(t))));
+                all.extend(values(t).map(|(_, name)| one(name, Meaning::Value(t))));
             }
             Item::Action(a) => other(&a.name, "action", a.comment.as_deref(), None, &mut all),
             Item::Section(s) => other(&s.name, "transition section", None, None, &mut all),
@@ -190,6 +199,8 @@ pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>>
         Meaning::Variable(_, None)
         | Meaning::Chart(_)
         | Meaning::Type(_)
+        | Meaning::Named(_)
+        | Meaning::Value(_)
         | Meaning::Member(_)
         | Meaning::Other(..) => None,
     };
@@ -215,11 +226,14 @@ pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>>
 /// The type, or the member of a type, that the file declares and that is named at a byte.
 pub fn declared(document: &Document, byte: usize) -> Option<Named<'_>> {
     // Following all names is of use only where there are such types.
-    document.items.iter().find(|i| matches!(i, Item::Composed(_)))?;
+    document.items.iter().find(|i| matches!(i, Item::Composed(_) | Item::Type(_)))?;
     let known = g7_compile::references(document);
     let definition = known.at(u32::try_from(byte).ok()?)?;
     names(document).into_iter().find(|n| match (&n.meaning, definition) {
-        (Meaning::Type(_), Definition::Type(name)) => *n.name.text == **name,
+        (Meaning::Type(_) | Meaning::Named(_), Definition::Type(name)) => *n.name.text == **name,
+        (Meaning::Value(t), Definition::Value { of, name }) => {
+            *n.name.text == **name && t.names.first().is_some_and(|n| *n.text == **of)
+        }
         (Meaning::Member(m), Definition::Member { of, name }) => {
             *n.name.text == **name && *m.of.name.text == **of
         }

@@ -58,6 +58,10 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
         Item::Chart(c) => vec![chart(c)],
         Item::Instance(i) => instance(i),
         Item::Composed(c) => vec![composed(c)],
+        Item::Type(t) => {
+            let told = || detail(t.comment.as_deref(), || say!("type"));
+            t.names.iter().map(|name| entry(name, Kind::Function, told(), t.at.0)).collect()
+        }
         Item::Action(a) => {
             vec![entry(&a.name, Kind::Function, detail(a.comment.as_deref(), || say!("action")), a.at.0)]
         }

@@ -1,7 +1,7 @@
 //! The tables of variables and steps.
 
 use g7_compile::references::{Declared, Member};
-use g7_model::{ChartKind, Said, Span, Type, VarDecl, VarKind, say};
+use g7_model::{ChartKind, Document, Item, Said, Span, Type, VarDecl, VarKind, say};
 
 use crate::file::Readable;
 use crate::ids;
@@ -117,7 +117,12 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
                 initial: s.initial,
                 at,
             }),
-            Meaning::Chart(_) | Meaning::Type(_) | Meaning::Member(_) | Meaning::Other(..) => {}
+            Meaning::Chart(_)
+            | Meaning::Type(_)
+            | Meaning::Named(_)
+            | Meaning::Value(_)
+            | Meaning::Member(_)
+            | Meaning::Other(..) => {}
         }
     }
     Tables { stale: readable.stale, variables, steps }
@@ -152,6 +157,12 @@ fn declaration_after(word: &str, name: &str, v: &VarDecl) -> String {
         line.push_str(" retain");
     }
     line
+}
+
+/// The declaration of a type on one line: `type Percent : INT(0..100)`.
+pub fn type_declaration(t: &VarDecl) -> String {
+    let item = Item::Type(VarDecl { comment: None, ..t.clone() });
+    g7_syntax::print(&Document { items: vec![item], notes: Vec::new() }, None).trim_end().to_owned()
 }
 
 /// The declaration of a member on one line.

@@ -109,8 +109,8 @@ pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
         let list = match n.meaning {
             Meaning::Step(..) => &mut steps,
             Meaning::Chart(_) => &mut charts,
-            Meaning::Type(_) => &mut types,
-            Meaning::Variable(..) | Meaning::Member(_) | Meaning::Other(..) => &mut variables,
+            Meaning::Type(_) | Meaning::Named(_) => &mut types,
+            Meaning::Variable(..) | Meaning::Value(_) | Meaning::Member(_) | Meaning::Other(..) => &mut variables,
         };
         list.insert(&*n.name.text);
     }

@@ -48,6 +48,8 @@ pub enum Item {
     Instance(Instance),
     /// A structure, or a function block of one's own.
     Composed(Composed),
+    /// `type Percent : INT(0..100)`, `type Mode : (Manual, Automatic)`: one name, and what variables of the type are.
+    Type(VarDecl),
     /// `action Pump { … }`.
     Action(NamedAction),
     /// `transition section …`.
@@ -225,8 +227,12 @@ pub struct VarDecl {
     pub array: Option<Box<Array>>,
     /// Their type; of arrays, that of the elements. BOOL where `of` names the type.
     pub ty: Type,
-    /// The name of a type that the file declares, see [`Composed`].
+    /// The name of a type that the file declares, see [`Composed`] and [`Item::Type`].
     pub of: Option<Box<Name>>,
+    /// What they can hold, where that is less than all values of `ty`.
+    pub limits: Option<Box<Limits>>,
+    /// The value of what `init` leaves out, given by a declared type; the type's zero when absent. No text gives one.
+    pub usual: Option<Box<Expr>>,
     /// Initial value; the type's zero when absent. Of arrays, a [`crate::ExprKind::List`].
     pub init: Option<Expr>,
     /// Address (`%I0.0`, with its `%`) or channel, as written.
@@ -243,6 +249,18 @@ pub struct VarDecl {
     pub at: Place,
 }
 
+/// The values of a variable of an integer type, where it cannot hold them all (IEC 61131-3:2003, 2.3.3.1).
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Limits {
+    /// A subrange, `INT(0..100)`: both ends belong to it.
+    Range(Expr, Expr),
+    /// An enumeration, `(Manual, Automatic := 5)`, in the declaration of its type alone: each value, with its number where
+    /// one is written.
+    Values(Vec<(Name, Option<Expr>)>),
+    /// The values of this enumeration; [`crate::named`] makes it. No text gives it.
+    Of(Name),
+}
+
 impl VarDecl {
     /// Variables with names and a type alone.
     pub fn new(kind: VarKind, names: Vec<Name>, ty: Type, at: Place) -> VarDecl {
@@ -252,6 +270,8 @@ impl VarDecl {
             array: None,
             ty,
             of: None,
+            limits: None,
+            usual: None,
             init: None,
             address: None,
             inverted: false,
@@ -524,6 +544,7 @@ impl Item {
             Item::Chart(c) => c.at.0,
             Item::Instance(i) => i.at.0,
             Item::Composed(c) => c.at.0,
+            Item::Type(t) => t.at.0,
             Item::Action(a) => a.at.0,
             Item::Section(s) => s.at.0,
             Item::Function(f) => f.at.0,

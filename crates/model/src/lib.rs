@@ -32,6 +32,7 @@ mod functions;
 pub mod instances;
 mod language;
 mod name;
+pub mod named;
 mod nanos;
 mod operators;
 pub mod places;
@@ -52,7 +53,7 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
+    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout, Limits,
     NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
     Transition, VarDecl, VarKind,
 };

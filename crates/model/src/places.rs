@@ -6,7 +6,7 @@
 use crate::{
     Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
     ChartItem, ChartKind, Composed, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames,
-    Item, Layout, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt,
+    Item, Layout, Limits, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt,
     Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario,
     Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt,
     TestStmtKind, TextEdit, Transition, Type, UnaryOp, VarDecl, VarKind, View, Work,
@@ -141,7 +141,7 @@ structs! {
     TestStmt { kind, at }
     TextEdit { at, text }
     Transition { label, from, to, receptivity, priority, comment, on_clearing, chained, at }
-    VarDecl { kind, names, array, ty, of, init, address, inverted, retain, safe, comment, at }
+    VarDecl { kind, names, array, ty, of, limits, usual, init, address, inverted, retain, safe, comment, at }
     View { file, bindings, at }
 }
 
@@ -174,8 +174,10 @@ enums! {
         Function(part), Pre(body, at), Post(body, at), Plant(part), Test(part), Prove(part), Layout(part),
         Instance(part),
         Composed(part),
+        Type(part),
     }
     InstanceNames { One(name), Range(least, most) }
+    Limits { Range(least, most), Values(values), Of(name) }
     Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Str(text) }
     Order { Force(name, situation), Enable(name), Mask(name), Call(name), Enclose(name) }
     Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text) }

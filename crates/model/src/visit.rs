@@ -8,7 +8,7 @@ use std::slice::from_ref;
 
 use crate::{
     Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Instance,
-    InstanceNames, Item, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt,
+    InstanceNames, Item, Limits, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt,
     TestStmtKind, VarDecl, Work,
 };
 
@@ -56,6 +56,7 @@ pub trait Visitor<'d> {
             Item::Prove(p) => self.property(&p.kind),
             Item::Instance(i) => self.instance(i),
             Item::Composed(c) => self.composed(c),
+            Item::Type(t) => self.variable(t),
             Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Layout(_) => {}
         }
     }
@@ -63,6 +64,11 @@ pub trait Visitor<'d> {
     /// The values of a declaration.
     fn variable(&mut self, v: &'d VarDecl) {
         self.exprs(v.array.iter().flat_map(|a| a.bounds()).chain(&v.init).chain(&v.safe));
+        match v.limits.as_deref() {
+            Some(Limits::Range(least, most)) => self.exprs([least, most]),
+            Some(Limits::Values(values)) => self.exprs(values.iter().filter_map(|(_, number)| number.as_ref())),
+            Some(Limits::Of(_)) | None => {}
+        }
     }
 
     /// The values of the members of a type, and the statements of a function block.

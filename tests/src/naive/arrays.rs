@@ -58,14 +58,14 @@ impl Model {
                 .flat_map(|n| element(&Path { names: vec![n.clone()] }, indexes).names)
                 .collect(),
             array: None,
-            init: given.get(place).cloned(),
+            init: given.get(place).cloned().or_else(|| v.usual.as_deref().cloned()),
             ..v.clone()
         };
         all.iter().enumerate().map(single).collect()
     }
 
     /// A number, or that of a constant that is seen from a scope.
-    fn bound(&self, scope: ScopeId, e: &Expr) -> i128 {
+    pub(super) fn bound(&self, scope: ScopeId, e: &Expr) -> i128 {
         let constant = |path: &Path| {
             let v = self.variable_named(scope, &path.text())?;
             self.vars[v].init.as_ref()?.kind.whole()

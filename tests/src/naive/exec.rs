@@ -10,6 +10,7 @@ use super::bits;
 use super::builtin;
 use super::composed::Running;
 use super::model::{Model, ScopeId, StepId, VarId, is_name};
+use super::named::number_of;
 use super::resolve::Ref;
 use super::state::State;
 use super::value::{NaiveFault, Run, Typed, Value, bad, binary, negate, zero};
@@ -136,6 +137,7 @@ impl<'a> Exec<'a> {
                 Value::Int(n) => Typed::bool(bits::bit(*n, *k)),
                 _ => return bad("a bit of no number"),
             },
+            Ref::Value(n) => Typed::int(*n),
             Ref::Active(step) => Typed::bool(self.s.is_active(self.m, *step)),
             Ref::Time(step) if self.m.rules.scan_clock => Typed::int(self.s.scans(self.m, *step).into()),
             Ref::Time(step) => Typed::time(self.s.time(self.m, *step)),
@@ -190,7 +192,10 @@ impl<'a> Exec<'a> {
         for arg in args {
             values.push(self.eval(scope, &arg.value)?);
         }
-        builtin::call(&name, &values)
+        match number_of(self.m, &name, &values) {
+            Some(number) => Ok(number),
+            None => builtin::call(&name, &values),
+        }
     }
 
     /// The function of an operator; one of more than two values goes from one to the next.

@@ -55,18 +55,8 @@ pub(super) fn charts_of<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'
                 values.push(value.value.clone());
             }
             let constants = chart.params.iter().zip(values).map(|(p, value)| VarDecl {
-                kind: VarKind::Const,
-                names: vec![p.name.clone()],
-                array: None,
-                of: None,
-                ty: p.ty,
                 init: Some(value),
-                address: None,
-                inverted: false,
-                retain: false,
-                safe: None,
-                comment: None,
-                at: i.at,
+                ..VarDecl::new(VarKind::Const, vec![p.name.clone()], p.ty, i.at)
             });
             Ok(Made { chart, name, constants: constants.collect() })
         })

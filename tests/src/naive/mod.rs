@@ -14,6 +14,7 @@ mod fb;
 mod force;
 mod instances;
 mod model;
+mod named;
 mod resolve;
 mod sample;
 mod scan;

@@ -10,6 +10,7 @@ use g7_model::{
 };
 
 use super::instances::{charts_of, numbered};
+use super::named::named;
 use super::value::{Run, bad};
 
 pub(super) type ScopeId = usize;
@@ -130,6 +131,8 @@ pub(super) struct Var {
     pub(super) safe: Option<Expr>,
     pub(super) retain: bool,
     pub(super) scope: ScopeId,
+    /// The least and the greatest value, of a type with bounds.
+    pub(super) range: Option<(i128, i128)>,
 }
 
 /// A forcing order of a step.
@@ -155,6 +158,8 @@ pub(super) struct Model {
     pub(super) functions: BTreeMap<String, Function>,
     /// The structures and function blocks of the file.
     pub(super) types: BTreeMap<String, Composed>,
+    /// The other types of the file.
+    pub(super) named: BTreeMap<String, VarDecl>,
     /// The types of all that has members, elements of arrays among them.
     pub(super) composed: BTreeMap<(ScopeId, String), String>,
     /// The bodies of PRE (true) and POST with their scopes, in the order of the text.
@@ -192,6 +197,7 @@ impl Model {
             addresses: BTreeMap::new(),
             functions: BTreeMap::new(),
             types: types(doc),
+            named: named(doc),
             composed: BTreeMap::new(),
             bodies: Vec::new(),
             forcings: Vec::new(),
@@ -250,6 +256,7 @@ impl Model {
                 | Item::Test(_)
                 | Item::Prove(_)
                 | Item::Composed(_)
+                | Item::Type(_)
                 | Item::Layout(_) => {}
             }
         }
@@ -257,6 +264,7 @@ impl Model {
     }
 
     pub(super) fn declare(&mut self, scope: ScopeId, v: &VarDecl) {
+        let v = &self.with_type(v);
         if let Some(of) = &v.of {
             return self.declare_composed(scope, v, &of.text.clone());
         }
@@ -283,6 +291,7 @@ impl Model {
                 safe: v.safe.clone(),
                 retain: v.retain,
                 scope,
+                range: self.range(scope, v),
             });
             self.scopes[scope].vars.insert(name.text.to_string(), id);
             if let Some(address) = v.address.as_ref().and_then(|a| a.text.strip_prefix('%')) {
@@ -498,6 +507,7 @@ impl Model {
                 safe: None,
                 retain: false,
                 scope: FILE,
+                range: None,
             });
         }
     }

@@ -16,6 +16,8 @@ pub(super) enum Ref {
     /// `%X12.T`: the step time in units of 100 ms.
     Tenths(StepId),
     Section(ScopeId, String),
+    /// A value of an enumeration.
+    Value(i128),
 }
 
 impl Model {
@@ -48,7 +50,7 @@ impl Model {
                 _ => Some(None),
             }
         };
-        found(true).or_else(|| found(false)).flatten()
+        found(true).or_else(|| found(false)).flatten().or_else(|| self.value_named(&names))
     }
 
     /// The scopes in which a name is searched: this one, the charts around an expansion, the file.

@@ -6,6 +6,7 @@ use super::bits;
 use super::exec::{Exec, Frame};
 use super::instances::chart_written;
 use super::model::ScopeId;
+use super::named::held;
 use super::resolve::Ref;
 use super::state::{Request, Timing};
 use super::value::{Run, Typed, Value, bad};
@@ -187,7 +188,7 @@ impl Exec<'_> {
     fn put(&mut self, to: Option<Ref>, value: &Typed) -> Run<()> {
         match to {
             Some(Ref::Var(v)) => {
-                self.s.vars[v] = value.to(self.m.vars[v].ty)?;
+                self.s.vars[v] = held(self.m.vars[v].range, value.to(self.m.vars[v].ty)?)?;
                 self.written.push(v);
                 Ok(())
             }

@@ -4,14 +4,17 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Body, ChartItem, Composed, Document, Item, Local, Name, Type, VarDecl};
+use g7_model::{Body, ChartItem, Composed, Document, Item, Limits, Local, Name, Type, VarDecl};
 
 use super::named::Definition;
+use crate::resolve::Traced;
 
-/// The structures and function blocks of a file, and its variables.
+/// The types of a file, and its variables.
 #[derive(Debug, Default)]
 pub struct Types<'d> {
     types: HashMap<&'d str, &'d Composed>,
+    /// The types that are no structures and function blocks.
+    others: HashMap<&'d str, &'d VarDecl>,
     /// By the name of their chart and their own.
     vars: HashMap<(Option<&'d str>, &'d str), &'d VarDecl>,
 }
@@ -89,6 +92,16 @@ fn locals(of: &Composed) -> &[Local] {
     }
 }
 
+/// The values that a type declares, each behind the name of the type.
+pub fn values(t: &VarDecl) -> impl Iterator<Item = (&Name, &Name)> {
+    let declared = match t.limits.as_deref() {
+        Some(Limits::Values(values)) => values.as_slice(),
+        _ => &[],
+    };
+    let of = t.names.first();
+    declared.iter().filter_map(move |(name, _)| Some((of?, name)))
+}
+
 impl<'d> Types<'d> {
     /// The types and variables of a document. Of two with one name, the first counts.
     pub fn of(document: &'d Document) -> Types<'d> {
@@ -96,6 +109,7 @@ impl<'d> Types<'d> {
         for item in &document.items {
             match item {
                 Item::Composed(c) => _ = made.types.entry(&*c.name.text).or_insert(c),
+                Item::Type(t) => made.others.extend(t.names.first().map(|name| (&*name.text, t))),
                 Item::Var(v) => made.declare(None, v),
                 Item::Chart(c) => c.items.iter().for_each(|i| {
                     if let ChartItem::Var(v) = i {
@@ -111,6 +125,34 @@ impl<'d> Types<'d> {
     fn declare(&mut self, chart: Option<&'d str>, v: &'d VarDecl) {
         for name in &v.names {
             self.vars.entry((chart, &*name.text)).or_insert(v);
+        }
+    }
+
+    /// True if the file declares a type of this name.
+    pub fn has(&self, name: &str) -> bool {
+        self.types.contains_key(name) || self.others.contains_key(name)
+    }
+
+    /// The names of a path that is a value of an enumeration: `Automatic`, `Mode.Automatic`. None for other paths, and for
+    /// a value of two enumerations.
+    pub(super) fn value(&self, names: &[Name]) -> Vec<Traced> {
+        let value = |of: &Name, name: &Name| Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
+        match names {
+            [only] => {
+                let mut all = self.others.values().flat_map(|t| values(t)).filter(|(_, v)| v.text == only.text);
+                match (all.next(), all.next()) {
+                    (Some((of, name)), None) => vec![(0, value(of, name), 0)],
+                    _ => Vec::new(),
+                }
+            }
+            [ty, name] => {
+                let Some(t) = self.others.get(&*ty.text) else { return Vec::new() };
+                let mut all = vec![(0, Definition::Type(ty.text.to_string()), 0)];
+                let found = values(t).find(|(_, v)| v.text == name.text);
+                all.extend(found.map(|(of, name)| (1, value(of, name), 0)));
+                all
+            }
+            _ => Vec::new(),
         }
     }
 
@@ -132,8 +174,20 @@ impl<'d> Types<'d> {
     /// The type of a variable.
     pub fn kind(&self, v: &VarDecl) -> Kind<'d> {
         match &v.of {
-            Some(of) => self.named(&of.text).map_or(Kind::Unknown, Kind::Composed),
+            Some(of) => self.kind_named(&of.text, 0),
             None => Kind::Plain(v.ty),
+        }
+    }
+
+    /// The type of a name; one that stands for others is followed, at most as far as there are types.
+    fn kind_named(&self, name: &str, passed: usize) -> Kind<'d> {
+        if let Some(composed) = self.named(name) {
+            return Kind::Composed(composed);
+        }
+        let Some(t) = self.others.get(name).filter(|_| passed < self.others.len()) else { return Kind::Unknown };
+        match &t.of {
+            Some(of) => self.kind_named(&of.text, passed + 1),
+            None => Kind::Plain(t.ty),
         }
     }
 

@@ -14,7 +14,7 @@ mod walk;
 
 use g7_model::{Document, Span};
 
-pub use members::{Declared, Kind, Member, Types};
+pub use members::{Declared, Kind, Member, Types, values};
 pub use named::{Definition, Unknown, Use, Written};
 
 /// Every name of a document with what it refers to, in the order of the text.

@@ -39,8 +39,15 @@ pub enum Definition {
     },
     /// A function.
     Function(String),
-    /// A structure or function block that the file declares.
+    /// A type that the file declares.
     Type(String),
+    /// A value of an enumeration.
+    Value {
+        /// The enumeration.
+        of: String,
+        /// Its name.
+        name: String,
+    },
     /// A member, a parameter or a variable of one.
     Member {
         /// The structure or function block.

@@ -5,12 +5,12 @@ use std::collections::{HashMap, HashSet};
 use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
-    Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item,
+    Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item, Limits,
     Name, Order, Path, Placed, Plant, PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl,
     chart_in, instance_of, slot_of,
 };
 
-use super::members::{Kind, Member, Types};
+use super::members::{Kind, Member, Types, values};
 use super::named::{Definition, Unknown, Use, Written};
 use crate::ir::ChartId;
 use crate::resolve::{Followed, Traced, Tracer, resolve_open};
@@ -59,6 +59,7 @@ fn instances_as_charts(doc: &Document, uses: &mut [Use]) {
             Definition::Chart(_)
             | Definition::Function(_)
             | Definition::Type(_)
+            | Definition::Value { .. }
             | Definition::Member { .. }
             | Definition::Plant(_)
             | Definition::PlantItem { .. } => None,
@@ -129,7 +130,12 @@ impl<'d> Walk<'_, 'd> {
             return found;
         }
         let named = self.of_instance(names);
-        (self.tracer.path(named.as_deref().unwrap_or(names), &self.locals), Kind::Unknown)
+        let found = self.tracer.path(named.as_deref().unwrap_or(names), &self.locals);
+        let value = if found.names.is_empty() { self.types.value(names) } else { Vec::new() };
+        match value.is_empty() {
+            true => (found, Kind::Unknown),
+            false => (Followed { whole: value.len() == names.len(), names: value }, Kind::Unknown),
+        }
     }
 
     /// The same for a path to a variable of a type that the file declares, to a member of one, and behind an index;
@@ -230,6 +236,7 @@ impl<'d> Walk<'_, 'd> {
             Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Chart(_) => {}
             Item::Instance(i) => self.named_instance(i),
             Item::Composed(c) => self.composed(c),
+            Item::Type(t) => self.type_declaration(t),
             Item::Var(v) => self.variable(None, v),
             Item::Action(a) => self.named(None, a),
             Item::Section(s) => self.section(None, s),
@@ -297,10 +304,13 @@ impl<'d> Walk<'_, 'd> {
     /// All of a declaration but the names that it declares.
     fn declaration(&mut self, v: &'d VarDecl) {
         if let Some(of) = &v.of {
-            let known = self.types.named(&of.text).map(|c| Definition::Type(c.name.text.to_string()));
+            let known = self.types.has(&of.text).then(|| Definition::Type(of.text.to_string()));
             self.name(of, known, Written::Name);
         }
         self.exprs(v.array.iter().flat_map(|a| a.bounds()));
+        if let Some(Limits::Range(least, most)) = v.limits.as_deref() {
+            self.exprs([least, most]);
+        }
         v.init.iter().for_each(|e| self.initial(e, self.types.kind(v)));
         self.exprs(&v.safe);
     }
@@ -328,6 +338,18 @@ impl<'d> Walk<'_, 'd> {
         };
         self.name(name, member.map(|m| m.definition()), Written::Name);
         member.map_or(Kind::Unknown, |m| self.types.kind_of(&m))
+    }
+
+    /// A type, and the values of an enumeration.
+    fn type_declaration(&mut self, t: &'d VarDecl) {
+        for name in &t.names {
+            self.add(name.at.0, Definition::Type(name.text.to_string()), Written::Declared);
+        }
+        for (of, name) in values(t) {
+            let def = Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
+            self.add(name.at.0, def, Written::Declared);
+        }
+        self.declaration(t);
     }
 
     /// A structure or function block.

@@ -195,12 +195,13 @@ impl<'d> Resolver<'_, 'd> {
         };
         let given = decl.init.as_ref().map(|e| self.element_values(chart, decl.ty, e, count));
         let given = given.unwrap_or_default();
+        let usual = decl.usual.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         let safe = decl.safe.as_ref().and_then(|e| self.constant(chart, e, decl.ty));
         for array in ids.chunks(count) {
             for (n, id) in array.iter().enumerate() {
                 self.pending.remove(id);
                 let Some(v) = self.unit.vars.get_mut(id.index()) else { continue };
-                if let Some(Some(value)) = given.get(n) {
+                if let Some(value) = given.get(n).and_then(Option::as_ref).or(usual.as_ref()) {
                     v.init = value.clone();
                 }
                 if let Some(value) = &safe {

@@ -178,6 +178,7 @@ fn renamed(definition: &Definition, to: &str) -> Definition {
         Definition::Function(_) => Definition::Function(to),
         Definition::Type(_) => Definition::Type(to),
         Definition::Member { of, .. } => Definition::Member { of, name: to },
+        Definition::Value { of, .. } => Definition::Value { of, name: to },
         Definition::Transition { chart, .. } => Definition::Transition { chart, label: to },
         Definition::Plant(_) => Definition::Plant(to),
         Definition::PlantItem { plant, .. } => Definition::PlantItem { plant, name: to },
@@ -196,6 +197,7 @@ fn there_already(definition: &Definition, to: &str) -> Said {
         Definition::Function(_) => say!("there is a function `{to}` already"),
         Definition::Type(_) => say!("there is a type `{to}` already"),
         Definition::Member { of, .. } => say!("there is a member `{to}` of `{of}` already"),
+        Definition::Value { of, .. } => say!("there is a value `{to}` of `{of}` already"),
         Definition::Transition { .. } => say!("there is a label `{to}` already"),
         Definition::Plant(_) => say!("there is a plant `{to}` already"),
         Definition::PlantItem { .. } => say!("there is a state of the plant `{to}` already"),
@@ -214,6 +216,7 @@ fn none_such(definition: &Definition) -> Said {
         Definition::Function(_) => say!("there is no function with this name"),
         Definition::Type(_) => say!("there is no type with this name"),
         Definition::Member { .. } => say!("there is no member with this name"),
+        Definition::Value { .. } => say!("there is no value with this name"),
         Definition::Transition { .. } => say!("there is no label with this name"),
         Definition::Plant(_) => say!("there is no plant with this name"),
         Definition::PlantItem { .. } => say!("there is no state of the plant with this name"),
@@ -349,9 +352,11 @@ fn within(d: &Definition, old: &Definition, new: &Definition) -> Definition {
         (Definition::Plant(a), Definition::Plant(b), Definition::PlantItem { plant, .. }) if plant == a => {
             plant.clone_from(b);
         }
-        (Definition::Type(a), Definition::Type(b), Definition::Member { of, .. }) if of == a => {
-            of.clone_from(b)
-        }
+        (
+            Definition::Type(a),
+            Definition::Type(b),
+            Definition::Member { of, .. } | Definition::Value { of, .. },
+        ) if of == a => of.clone_from(b),
         _ => {}
     }
     d
@@ -375,6 +380,7 @@ pub(super) fn last_name(definition: &Definition) -> &str {
         | Definition::Action { name, .. }
         | Definition::Section { name, .. }
         | Definition::Member { name, .. }
+        | Definition::Value { name, .. }
         | Definition::PlantItem { name, .. } => name,
         Definition::Transition { label, .. } => label,
     }

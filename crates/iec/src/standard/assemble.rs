@@ -27,7 +27,7 @@ impl<'d> Lower<'d> {
                 Item::Profile(p) => at = p.at.0,
                 Item::Cycle(..) => items.push(item.clone()),
                 Item::Var(v) => items.extend(self.variable_of(None, v, false).map(Item::Var)),
-                Item::Composed(_) => {} // Plain variables stand in its place already.
+                Item::Composed(_) | Item::Type(_) => {} // Plain variables and numbers stand in their place already.
                 Item::Function(f) => functions.push(Item::Function(self.function(f))),
                 Item::Pre(body, at) => self.processing(None, body, at.0, &mut pre),
                 Item::Post(body, at) => self.processing(None, body, at.0, &mut post),

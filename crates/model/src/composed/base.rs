@@ -31,6 +31,8 @@ pub struct Composition<'d> {
     pub(super) wrong: HashSet<&'d str>,
     /// The types that hold a function block, their own or one of the standard.
     pub(super) blocks: HashSet<&'d str>,
+    /// The names of the other types of the file.
+    pub(super) enumerations: Vec<&'d str>,
     /// The types of which there are variables.
     pub(super) used: HashSet<&'d str>,
     /// How many variables and statements can still be made.
@@ -92,6 +94,7 @@ impl<'d> Composition<'d> {
             sections: HashSet::new(),
             wrong: HashSet::new(),
             blocks: HashSet::new(),
+            enumerations: Vec::new(),
             used: HashSet::new(),
             room: MOST,
             full: false,
@@ -101,6 +104,7 @@ impl<'d> Composition<'d> {
         for item in &document.items {
             match item {
                 Item::Var(v) => declare(&mut made.file, v),
+                Item::Type(t) => made.enumerations.extend(t.names.first().map(|n| &*n.text)),
                 Item::Section(s) => _ = made.sections.insert(&s.name.text),
                 Item::Chart(c) => {
                     let scope = made.charts.entry(&*c.name.text).or_default();

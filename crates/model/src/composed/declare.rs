@@ -410,7 +410,7 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
             value.or_else(|| constant.then(|| Expr::zero(member.ty, part.at)))
         }
         false => list.then(|| {
-            let zero = Expr::zero(member.ty, part.at);
+            let zero = member.usual.as_deref().cloned().unwrap_or_else(|| Expr::zero(member.ty, part.at));
             let values = part.values.into_iter().map(|v| (1, v.unwrap_or_else(|| zero.clone()))).collect();
             Expr { kind: ExprKind::List(values), at: part.at }
         }),
@@ -419,6 +419,8 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
         (!part.dimensions.is_empty()).then(|| Box::new(Array { dimensions: part.dimensions, at: part.at }));
     VarDecl {
         array,
+        limits: member.limits.clone(),
+        usual: member.usual.clone(),
         init,
         retain: part.retain && part.kind == VarKind::Var,
         comment: member.comment.clone().or_else(|| part.whole.comment.clone()),

@@ -112,16 +112,10 @@ impl<'d> Composition<'d> {
         if name.is_empty() {
             return; // The name could not be read; the parser has reported it.
         }
-        let problem = Problem::new(&codes::UNKNOWN_WORD, of.at.0, say!("there is no type `{name}`"));
         let mut names: Vec<&str> = Type::names().collect();
-        names.extend(self.types.keys().copied());
-        let near = crate::similar(name, &names).map(str::to_owned);
-        self.problems.push(match near {
-            Some(near) => problem.meant(&near),
-            None => problem.help(say!(
-                "types are those of IEC 61131-3, and those that `struct` and `function block` declare"
-            )),
-        });
+        names.extend(self.types.keys().chain(&self.enumerations).copied());
+        names.sort_unstable();
+        self.problems.push(unknown_type(of, &names));
     }
 
     pub(super) fn too_large(&mut self, at: Span) {
@@ -130,5 +124,17 @@ impl<'d> Composition<'d> {
             "the members of all variables and the statements of all calls together are more than {most}"
         );
         self.problems.push(Problem::new(&codes::TOO_LARGE, at, what));
+    }
+}
+
+/// The problem of a name that is none of these types.
+pub(crate) fn unknown_type(of: &Name, names: &[&str]) -> Problem {
+    let name = &of.text;
+    let problem = Problem::new(&codes::UNKNOWN_WORD, of.at.0, say!("there is no type `{name}`"));
+    match crate::similar(name, names) {
+        Some(near) => problem.meant(near),
+        None => problem.help(say!(
+            "types are those of IEC 61131-3, and those that `struct`, `function block` and `type` declare"
+        )),
     }
 }

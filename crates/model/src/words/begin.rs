@@ -69,6 +69,14 @@ pub const FILE: &[Word] = &[
     Word::reserved("function", ["a function block", "un bloc fonctionnel", "um bloco funcional"])
         .then(" block"),
     Word::free("struct", ["a structure", "une structure", "uma estrutura"]),
+    Word::free(
+        "type",
+        [
+            "an enumeration, a type with bounds, or a name for a type",
+            "une énumération, un type à bornes, ou un nom pour un type",
+            "uma enumeração, um tipo com limites, ou um nome para um tipo",
+        ],
+    ),
     PRE,
     POST,
     Word::reserved("plant", ["a model of the process", "un modèle du procédé", "um modelo do processo"]),

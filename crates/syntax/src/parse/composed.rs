@@ -33,6 +33,7 @@ impl Parser<'_> {
                 let from = self.cur.start;
                 if self.at_name() {
                     let member = self.line(|p| p.declaration(VarKind::Var, from));
+                    self.no_values(&member);
                     self.plain_member(&member, false);
                     made.members.push(member);
                 } else {

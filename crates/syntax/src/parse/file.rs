@@ -53,6 +53,7 @@ impl Parser<'_> {
             "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
             "instance" => Item::Instance(self.line(Parser::instance)),
             "struct" => Item::Composed(self.structure()),
+            "type" => Item::Type(self.line(Parser::type_declaration)),
             "function" if self.at_block() => Item::Composed(self.function_block()),
             "action" => Item::Action(self.line(Parser::named_action)),
             "transition" => Item::Section(self.line(Parser::section)),

@@ -17,6 +17,7 @@ pub(crate) mod ladder;
 mod lines;
 mod literal;
 pub(crate) mod marks;
+mod named;
 mod plant;
 pub(crate) mod reading;
 mod scenario;
@@ -461,6 +462,7 @@ impl<'a> Parser<'a> {
             "prove" => self.peek().kind == Tok::Word,
             "instance" => self.at_instance(),
             "struct" => self.at_structure(),
+            "type" => self.at_type(),
             _ => false,
         }
     }

@@ -22,19 +22,24 @@ impl Parser<'_> {
     /// Reads a declaration; its first word is the current token.
     pub(super) fn variable(&mut self, kind: VarKind) -> VarDecl {
         let start = self.bump().start;
-        self.declaration(kind, start)
+        let made = self.declaration(kind, start);
+        self.no_values(&made);
+        made
     }
 
     /// Reads a declaration whose word is read, or that has none.
     pub(super) fn declaration(&mut self, kind: VarKind, start: u32) -> VarDecl {
         let names = self.names(say!("the name of a variable"));
         let array = self.array();
-        let of = self.named_type(array.is_some());
+        let values = self.enumeration(array.is_some());
+        let of = if values.is_none() { self.named_type(array.is_some()) } else { None };
         let ty = match (&of, &array) {
+            _ if values.is_some() => Type::Int,
             (Some(_), _) => Type::Bool,
             (None, Some(_)) => self.ty(),
             (None, None) => self.typed(),
         };
+        let limits = values.or_else(|| if of.is_none() { self.subrange(ty) } else { None });
         let at = self.since(start).into();
         let init = if array.is_some() { self.values() } else { self.initial_value() };
         let mut decl = VarDecl {
@@ -43,6 +48,8 @@ impl Parser<'_> {
             array,
             ty,
             of,
+            limits: limits.map(Box::new),
+            usual: None,
             init,
             address: None,
             inverted: false,

@@ -4,7 +4,7 @@ use super::{Printer, is_plain};
 use crate::parse::SWITCHES;
 use g7_iec::constant;
 use g7_model::{
-    Array, Document, Function, Instance, InstanceNames, Item, Name, NamedAction, Param, Profile, Section,
+    Array, Document, Expr, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Param, Profile, Section,
     Span, StmtKind, Switch, VarDecl, VarKind,
 };
 
@@ -37,6 +37,10 @@ impl Printer<'_> {
             Item::Chart(c) => self.group(c.at.0, apart, |s| s.chart(c)),
             Item::Instance(i) => self.line(i.at.0, apart, |s| s.instance(i)),
             Item::Composed(c) => self.group(c.at.0, apart, |s| s.composed(c)),
+            Item::Type(t) => self.line(t.at.0, apart, |s| {
+                s.push("type ");
+                s.declaration(t);
+            }),
             Item::Action(a) => self.group(a.at.0, apart, |s| s.named_action(a)),
             Item::Section(x) => self.section_item(x, apart),
             Item::Function(f) => self.group(f.at.0, apart, |s| s.function(f)),
@@ -92,9 +96,20 @@ impl Printer<'_> {
         if let Some(array) = &v.array {
             self.array(array);
         }
-        match &v.of {
-            Some(of) => self.name(&of.text),
-            None => self.push(&v.ty.to_string()),
+        match (&v.of, v.limits.as_deref()) {
+            (_, Some(Limits::Values(values))) => self.enumeration(values),
+            (_, Some(Limits::Of(name))) => self.name(&name.text),
+            (Some(of), _) => self.name(&of.text),
+            (None, limits) => {
+                self.push(&v.ty.to_string());
+                if let Some(Limits::Range(least, most)) = limits {
+                    self.push("(");
+                    self.expr(least);
+                    self.push("..");
+                    self.expr(most);
+                    self.push(")");
+                }
+            }
         }
         self.initial(v.init.as_ref());
         if let Some(address) = &v.address {
@@ -108,6 +123,20 @@ impl Printer<'_> {
             self.expr(safe);
         }
         self.comment(v.comment.as_deref());
+    }
+
+    /// `(Manual, Automatic := 5)`.
+    fn enumeration(&mut self, values: &[(Name, Option<Expr>)]) {
+        self.push("(");
+        for (i, (name, number)) in values.iter().enumerate() {
+            self.push(if i > 0 { ", " } else { "" });
+            self.name(&name.text);
+            if let Some(number) = number {
+                self.push(" := ");
+                self.expr(number);
+            }
+        }
+        self.push(")");
     }
 
     /// `ARRAY[1..6, 0..3] OF `.
@@ -217,6 +246,7 @@ pub(super) fn stand_apart(a: &Item, b: &Item) -> bool {
 #[derive(PartialEq, Eq, Clone, Copy)]
 enum Family {
     Head,
+    Types,
     Variables,
     Properties,
     Instances,
@@ -227,6 +257,7 @@ fn family(item: &Item) -> Family {
     match item {
         Item::Profile(_) | Item::Cycle(..) | Item::Target(..) => Family::Head,
         Item::Var(_) => Family::Variables,
+        Item::Type(_) => Family::Types,
         Item::Prove(_) => Family::Properties,
         Item::Instance(_) => Family::Instances,
         Item::Section(s) if s.short => Family::Variables,

@@ -59,6 +59,8 @@ fn variable() -> impl Strategy<Value = VarDecl> {
             names,
             array,
             of,
+            limits: None,
+            usual: None,
             ty,
             init: if kind == VarKind::Const { Some(value) } else { init },
             address: address.filter(|_| kind != VarKind::Const),

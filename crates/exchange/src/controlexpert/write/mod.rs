@@ -122,6 +122,7 @@ impl Writer<'_> {
                 | Item::Chart(_)
                 | Item::Instance(_)
                 | Item::Composed(_)
+                | Item::Type(_)
                 | Item::Layout(_) => {}
             }
         }

@@ -164,6 +164,7 @@ impl<'d> Writer<'d> {
             | Item::Chart(_)
             | Item::Instance(_)
             | Item::Composed(_)
+            | Item::Type(_)
             | Item::Layout(_)
             | Item::Pre(..) => {}
             Item::Profile(p) if p.name == ProfileName::Jgrafchart && p.switches.is_empty() => {}

@@ -125,7 +125,7 @@ impl<'d> Writer<'d> {
             Item::Cycle(_, at) => self.leave_out(*at, say!("a scan time")),
             Item::Target(_, at) => self.leave_out(*at, say!("a target")),
             // The charts of the instances stand in their place already.
-            Item::Instance(_) | Item::Composed(_) => {}
+            Item::Instance(_) | Item::Composed(_) | Item::Type(_) => {}
             Item::Action(a) => self.cannot(a.at, say!("a named action")),
             Item::Section(s) => self.cannot(s.at, say!("a transition section")),
             Item::Function(f) => self.cannot(f.at, say!("a function")),

@@ -1,0 +1,361 @@
+//! The table of declared types, and the declarations of variables of them.
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+
+use crate::{
+    Array, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span, Type,
+    VarDecl, VarKind, codes, say,
+};
+
+/// Most values of an enumeration.
+const MOST: usize = 1 << 12;
+
+/// The document in which each variable of a declared type has what the type says, and the problems of the types.
+pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
+    let limited = |v: &VarDecl| v.limits.is_some();
+    let concerned = |i: &Item| match i {
+        Item::Type(_) => true,
+        Item::Var(v) => limited(v),
+        Item::Chart(c) => c.vars().any(limited),
+        Item::Composed(c) => c.members.iter().chain(&c.inouts).any(limited),
+        _ => false,
+    };
+    if !document.items.iter().any(concerned) {
+        return (Cow::Borrowed(document), Vec::new());
+    }
+    let mut types = Types::of(document);
+    let items = document.items.iter().filter_map(|item| types.item(item)).collect();
+    (Cow::Owned(Document { items, notes: document.notes.clone() }), types.problems)
+}
+
+/// The declared types, each with its own type in the place of a name.
+struct Types<'d> {
+    known: HashMap<&'d str, VarDecl>,
+    constants: HashMap<&'d str, i128>,
+    /// The structures and function blocks.
+    composed: HashSet<&'d str>,
+    problems: Vec<Problem>,
+}
+
+impl<'d> Types<'d> {
+    fn of(document: &'d Document) -> Types<'d> {
+        let mut types = Types {
+            known: HashMap::new(),
+            constants: HashMap::new(),
+            composed: HashSet::new(),
+            problems: Vec::new(),
+        };
+        for item in &document.items {
+            match item {
+                Item::Var(v) => types.constants.extend(constants(v)),
+                Item::Composed(c) => _ = types.composed.insert(&*c.name.text),
+                _ => {}
+            }
+        }
+        let mut written: HashMap<&'d str, &'d VarDecl> = HashMap::new();
+        let mut order = Vec::new();
+        let taken = names(document);
+        for item in &document.items {
+            let Item::Type(t) = item else { continue };
+            let Some(name) = t.names.first().filter(|n| !n.text.is_empty()) else { continue };
+            if types.is_free(name, written.get(&*name.text).and_then(|t| t.names.first()), &taken) {
+                written.insert(&name.text, t);
+                order.push(t);
+            }
+        }
+        for t in order {
+            let mut way = Vec::new();
+            types.follow(t, &written, &mut way);
+        }
+        types
+    }
+
+    /// Reports the name of a type that means something else already.
+    fn is_free(&mut self, name: &Name, first: Option<&Name>, taken: &HashMap<&str, Span>) -> bool {
+        if Type::named(&name.text.to_ascii_uppercase()).is_some() {
+            let what = say!("`{}` is a type of the language", name.text);
+            let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
+            self.problems.push(problem.help(say!("choose another name")));
+            return false;
+        }
+        let first = first.map(|n| n.at.0).or_else(|| taken.get(&*name.text).copied());
+        if let Some(first) = first {
+            let what = say!("`{}` is defined twice", name.text);
+            let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
+            self.problems.push(problem.related(first, say!("defined here first")));
+        }
+        first.is_none()
+    }
+
+    /// Finds out about a type, after the one that it names.
+    fn follow(
+        &mut self,
+        t: &'d VarDecl,
+        written: &HashMap<&'d str, &'d VarDecl>,
+        way: &mut Vec<&'d VarDecl>,
+    ) {
+        let Some(name) = t.names.first() else { return };
+        if self.known.contains_key(&*name.text) {
+            return;
+        }
+        if let Some(place) = way.iter().position(|on| on.names.first().is_some_and(|n| n.text == name.text)) {
+            let mut problem =
+                Problem::new(&codes::RECURSION, name.at.0, say!("the type `{}` stands for itself", name.text));
+            for on in way.iter().skip(place + 1).flat_map(|on| on.names.first()) {
+                problem = problem.related(on.at.0, say!("by way of `{}`", on.text));
+            }
+            self.problems.push(problem);
+            self.known.insert(&name.text, VarDecl { of: None, limits: None, ..t.clone() });
+            return;
+        }
+        way.push(t);
+        if let Some(next) = t.of.as_ref().and_then(|of| written.get(&*of.text)) {
+            // A way is as long as the types of the file are many; each is followed once.
+            if way.len() < MOST {
+                self.follow(next, written, way);
+            }
+        }
+        way.pop();
+        if self.known.contains_key(&*name.text) {
+            return;
+        }
+        let mut own = t.clone();
+        if let Some(Limits::Values(values)) = t.limits.as_deref() {
+            self.enumeration(t, values);
+            let usual = values.first().map(|(first, _)| value_of(name, first));
+            own.init = t.init.clone().map(|e| qualified(e, name, values)).or(usual);
+            own.limits = Some(Box::new(Limits::Of(name.clone())));
+        } else {
+            self.apply(&mut own, &HashMap::new());
+            self.known_name(&mut own);
+        }
+        self.known.insert(&name.text, own);
+    }
+
+    /// Reports a type that stands for one which the file does not declare.
+    fn known_name(&mut self, t: &mut VarDecl) {
+        let Some(of) = t.of.take_if(|of| !self.composed.contains(&*of.text)) else { return };
+        if of.text.is_empty() {
+            return; // The name could not be read; the parser has reported it.
+        }
+        let mut names: Vec<&str> = Type::names().collect();
+        names.extend(self.composed.iter().chain(self.known.keys()).copied());
+        names.sort_unstable();
+        self.problems.push(crate::composed::unknown_type(&of, &names));
+    }
+
+    /// Checks the names and numbers of an enumeration.
+    fn enumeration(&mut self, t: &VarDecl, values: &[(Name, Option<Expr>)]) {
+        let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
+        if let Some((name, _)) = values.get(MOST) {
+            let what = say!("an enumeration has at most {MOST} values");
+            self.problems.push(Problem::new(&codes::TOO_LARGE, name.at.0, what));
+        }
+        for (name, number) in numbered(values) {
+            let twice = |what, first: Span| {
+                let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
+                problem.related(first, say!("defined here first"))
+            };
+            if let Some(first) = names.insert(&*name.text, name.at.0).filter(|_| !name.text.is_empty()) {
+                self.problems.push(twice(say!("`{}` is defined twice", name.text), first));
+            }
+            let Some(number) = number else {
+                let at = name.at.0;
+                let what = say!("the number of a value is a whole number of INT");
+                self.problems.push(Problem::new(&codes::OUT_OF_RANGE, at, what));
+                continue;
+            };
+            if let Some(first) = numbers.insert(number, name.at.0) {
+                self.problems.push(twice(say!("two values have the number {number}"), first));
+            }
+        }
+        if let Some(array) = &t.array {
+            let what = say!("an enumeration has a name of its own");
+            let help = say!("write `type Mode : (Manual, Automatic)`, and `: Mode` here");
+            self.problems.push(Problem::new(&codes::EXPECTED, array.at.0, what).help(help));
+        }
+    }
+
+    /// The item with plain declarations; enumerations stay, other types go.
+    fn item(&mut self, item: &Item) -> Option<Item> {
+        let none = HashMap::new();
+        Some(match item {
+            Item::Type(t) => {
+                let name = &t.names.first()?.text;
+                let kept = matches!(t.limits.as_deref(), Some(Limits::Values(_))) && self.known.contains_key(&**name);
+                return kept.then(|| item.clone());
+            }
+            Item::Var(v) => {
+                let mut own = v.clone();
+                self.apply(&mut own, &none);
+                Item::Var(own)
+            }
+            Item::Chart(c) => {
+                let inner: HashMap<&str, i128> = c.vars().flat_map(constants).collect();
+                let items = c.items.iter().cloned().map(|item| match item {
+                    ChartItem::Var(mut v) => {
+                        self.apply(&mut v, &inner);
+                        ChartItem::Var(v)
+                    }
+                    other => other,
+                });
+                Item::Chart(Chart { items: items.collect(), ..c.clone() })
+            }
+            Item::Composed(c) => {
+                let mut own = c.clone();
+                let inner: HashMap<&str, i128> = c.members.iter().flat_map(constants).collect();
+                own.members.iter_mut().chain(&mut own.inouts).for_each(|m| self.apply(m, &inner));
+                own.inouts.iter_mut().for_each(|m| m.init = None);
+                Item::Composed(own)
+            }
+            other => other.clone(),
+        })
+    }
+
+    /// Puts the type of a declaration in the place of its name.
+    fn apply(&mut self, v: &mut VarDecl, inner: &HashMap<&str, i128>) {
+        if let Some(ty) = v.of.as_ref().and_then(|of| self.known.get(&*of.text)) {
+            let many = v.array.is_some();
+            v.ty = ty.ty;
+            v.of.clone_from(&ty.of);
+            v.limits.clone_from(&ty.limits);
+            if let Some(array) = &ty.array {
+                let at = v.array.as_ref().map_or(array.at, |a| a.at);
+                let before = v.array.take().map_or(Vec::new(), |a| a.dimensions);
+                let dimensions = [before, array.dimensions.clone()].concat();
+                v.array = Some(Box::new(Array { dimensions, at }));
+            }
+            v.usual.clone_from(&ty.usual);
+            match (&ty.array, &ty.init) {
+                (Some(_), None) => {}
+                // The values of one array of the type are those of each; the order of the indexes is theirs.
+                (Some(_), Some(_)) if many => {
+                    let at = v.names.first().map_or(v.at.0, |n| n.at.0);
+                    let what = say!("an array of arrays has values of its own");
+                    let help = say!("write the values in brackets here, or leave them out of the type");
+                    if v.init.is_none() {
+                        self.problems.push(Problem::new(&codes::WRONG_TYPE, at, what).help(help));
+                    }
+                }
+                (None, Some(value)) if many => v.usual = Some(Box::new(value.clone())),
+                (_, Some(value)) => v.init = v.init.take().or_else(|| Some(value.clone())),
+                (None, None) => {}
+            }
+            return;
+        }
+        let Some(Limits::Range(least, most)) = v.limits.as_deref() else { return };
+        let (least, most) = (least.clone(), most.clone());
+        v.limits = self.range(&least, &most, v, inner);
+        // The default is the lower limit (IEC 61131-3:2003, 2.4.3.1).
+        if let Some(Limits::Range(least, _)) = v.limits.as_deref() {
+            match v.array {
+                Some(_) => v.usual = Some(Box::new(least.clone())),
+                None if v.init.is_none() => v.init = Some(least.clone()),
+                None => {}
+            }
+        }
+    }
+
+    /// The bounds as numbers.
+    fn range(
+        &mut self,
+        least: &Expr,
+        most: &Expr,
+        v: &VarDecl,
+        inner: &HashMap<&str, i128>,
+    ) -> Option<Box<Limits>> {
+        let number = |e: &Expr| match &e.kind {
+            ExprKind::Path(path) => match path.names.as_slice() {
+                [name] => inner.get(&*name.text).or_else(|| self.constants.get(&*name.text)).copied(),
+                _ => None,
+            },
+            kind => kind.whole(),
+        };
+        let at = least.at.0.to(most.at.0);
+        let (Some(low), Some(high)) = (number(least), number(most)) else {
+            let what = say!("a bound of a type is a whole number, or a constant with a written number");
+            self.problems.push(Problem::new(&codes::NOT_CONSTANT, at, what));
+            return None;
+        };
+        let (lowest, highest) = v.ty.bounds()?;
+        if low > high {
+            let what = say!("a type from {low} to {high} has no values");
+            self.problems.push(Problem::new(&codes::EMPTY_RANGE, at, what));
+            return None;
+        }
+        if low < lowest || high > highest {
+            let what = say!("{} holds {lowest} to {highest}", v.ty);
+            self.problems.push(Problem::new(&codes::OUT_OF_RANGE, at, what));
+            return None;
+        }
+        if v.kind == VarKind::Input {
+            let what = say!("the values of an input come from outside, so its type has no bounds");
+            let help = say!("copy it by `LIMIT` into a variable with bounds");
+            self.problems.push(Problem::new(&codes::WRONG_TYPE, at, what).help(help));
+            return None;
+        }
+        Some(Box::new(Limits::Range(whole(low, least), whole(high, most))))
+    }
+}
+
+/// The values with their numbers: without one, the next after the value before. None where there is no such number.
+pub(super) fn numbered(values: &[(Name, Option<Expr>)]) -> Vec<(&Name, Option<i128>)> {
+    let fits = |n: &i128| Type::Int.bounds().is_some_and(|(least, most)| (least..=most).contains(n));
+    let mut next = Some(0_i128);
+    let mut all = Vec::new();
+    for (name, written) in values {
+        let number = match written {
+            Some(e) => e.kind.whole(),
+            None => next,
+        };
+        let number = number.filter(fits);
+        next = number.map(|n| n + 1);
+        all.push((name, number));
+    }
+    all
+}
+
+/// What the items of a file other than types declare, and the charts.
+fn names(document: &Document) -> HashMap<&str, Span> {
+    let mut all = HashMap::new();
+    for item in &document.items {
+        let names = match item {
+            Item::Var(v) => v.names.iter().collect(),
+            Item::Chart(c) => vec![&c.name],
+            Item::Composed(c) => vec![&c.name],
+            Item::Function(f) => vec![&f.name],
+            _ => Vec::new(),
+        };
+        for name in names {
+            all.entry(&*name.text).or_insert(name.at.0);
+        }
+    }
+    all
+}
+
+fn constants(v: &VarDecl) -> Vec<(&str, i128)> {
+    let value = v.init.as_ref().filter(|_| v.kind == VarKind::Const).and_then(|e| e.kind.whole());
+    value.map_or(Vec::new(), |n| v.names.iter().map(|name| (&*name.text, n)).collect())
+}
+
+/// `Mode.Manual`.
+fn value_of(ty: &Name, value: &Name) -> Expr {
+    let names = vec![Name { text: ty.text.clone(), at: value.at }, value.clone()];
+    Expr { kind: ExprKind::Path(Path { names }), at: value.at }
+}
+
+/// A bare value of an enumeration in its own declaration, with the name of the type.
+fn qualified(e: Expr, ty: &Name, values: &[(Name, Option<Expr>)]) -> Expr {
+    match &e.kind {
+        ExprKind::Path(path) => match path.names.as_slice() {
+            [only] if values.iter().any(|(name, _)| name.text == only.text) => value_of(ty, only),
+            _ => e,
+        },
+        _ => e,
+    }
+}
+
+fn whole(n: i128, e: &Expr) -> Expr {
+    Expr { kind: ExprKind::Literal(Literal::Int(n, None)), at: e.at }
+}

@@ -1,0 +1,393 @@
+//! Values of enumerations as their numbers, and assignments to variables with bounds.
+
+use std::borrow::Cow;
+
+use super::checks::Checks;
+use super::scopes::{Found, Holds, Place, Scopes, Var};
+use crate::{
+    Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Plant, Problem,
+    Said, Span, StandardFunction, Type, VarDecl, codes, say,
+};
+
+/// The document with numbers in the place of values of enumerations, and with checks of what variables with bounds
+/// receive; with the problems found.
+pub fn held(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
+    match Held::of(document) {
+        Some(held) => {
+            let (document, problems) = held.document(document);
+            (Cow::Owned(document), problems)
+        }
+        None => (Cow::Borrowed(document), Vec::new()),
+    }
+}
+
+/// The enumerations and the variables with bounds of a document.
+pub struct Held<'d> {
+    pub(super) scopes: Scopes<'d>,
+    pub(super) checks: Checks,
+    pub(super) problems: Vec<Problem>,
+}
+
+impl<'d> Held<'d> {
+    /// None if a document that [`super::declared`] gave has no enumerations and no bounds.
+    pub fn of(document: &'d Document) -> Option<Held<'d>> {
+        let concerned = |i: &Item| match i {
+            Item::Type(_) => true,
+            Item::Var(v) => v.limits.is_some(),
+            Item::Chart(c) => c.vars().any(|v| v.limits.is_some()),
+            _ => false,
+        };
+        document.items.iter().any(concerned).then(|| Held {
+            scopes: Scopes::of(document),
+            checks: Checks::of(document),
+            problems: Vec::new(),
+        })
+    }
+
+    /// An expression that stands outside of all charts; any value is taken.
+    pub fn query(&mut self, e: &Expr) -> (Expr, Vec<Problem>) {
+        let mut e = e.clone();
+        self.problems.clear();
+        self.typed(&mut e, Place { chart: None, locals: &[] });
+        (e, std::mem::take(&mut self.problems))
+    }
+
+    /// A plant with numbers in the place of values.
+    pub fn plant(&mut self, plant: &Plant) -> (Plant, Vec<Problem>) {
+        let mut own = plant.clone();
+        self.problems.clear();
+        self.plant_items(&mut own);
+        (own, std::mem::take(&mut self.problems))
+    }
+
+    fn document(mut self, document: &Document) -> (Document, Vec<Problem>) {
+        let mut items = Vec::new();
+        for item in &document.items {
+            let mut own = item.clone();
+            match &mut own {
+                Item::Var(v) => self.declaration(v, None),
+                Item::Chart(c) => self.chart(c),
+                other => self.item(other),
+            }
+            items.push(own);
+        }
+        items.extend(self.checks.into_items());
+        (Document { items, notes: document.notes.clone() }, self.problems)
+    }
+
+    fn chart(&mut self, chart: &mut Chart) {
+        let name = chart.name.text.clone();
+        for item in &mut chart.items {
+            match item {
+                ChartItem::Var(v) => self.declaration(v, Some(&name)),
+                other => self.chart_item(other, &name),
+            }
+        }
+    }
+
+    /// The values of a declaration. Bounds are no longer needed afterwards.
+    fn declaration(&mut self, v: &mut VarDecl, chart: Option<&str>) {
+        let place = Place { chart, locals: &[] };
+        let limits = v.limits.take();
+        let range = match limits.as_deref() {
+            Some(Limits::Range(least, most)) => least.kind.whole().zip(most.kind.whole()),
+            _ => None,
+        };
+        let wanted = match limits.as_deref() {
+            Some(Limits::Of(name)) => Some(&*name.text),
+            _ => None,
+        };
+        let values = v.init.iter_mut().chain(&mut v.safe).chain(v.usual.as_deref_mut());
+        for e in values {
+            match &mut e.kind {
+                ExprKind::List(list) => {
+                    list.iter_mut().for_each(|(_, e)| self.value_of(e, wanted, range, place));
+                }
+                _ => self.value_of(e, wanted, range, place),
+            }
+        }
+        v.limits = limits.filter(|l| matches!(**l, Limits::Of(_)));
+    }
+
+    fn value_of(
+        &mut self,
+        e: &mut Expr,
+        wanted: Option<&str>,
+        range: Option<(i128, i128)>,
+        place: Place<'_>,
+    ) {
+        self.expect(e, wanted, place);
+        let Some((low, high)) = range else { return };
+        match self.number(e, place) {
+            Some(n) => self.within(n, (low, high), e.at.0),
+            None => {
+                let what = say!(
+                    "the value of a variable with bounds is known here: a whole number, or a constant with a written number"
+                );
+                self.problems.push(Problem::new(&codes::NOT_CONSTANT, e.at.0, what));
+            }
+        }
+    }
+
+    /// The number of a constant.
+    fn number(&self, e: &Expr, place: Place<'_>) -> Option<i128> {
+        match &e.kind {
+            ExprKind::Path(path) => match self.scopes.find(path, place) {
+                Found::Var(var, false) => var.number,
+                _ => None,
+            },
+            kind => kind.whole(),
+        }
+    }
+
+    fn within(&mut self, n: i128, (low, high): (i128, i128), at: Span) {
+        if !(low..=high).contains(&n) {
+            let what = say!("{n} is outside of {low}..{high}");
+            self.problems.push(Problem::new(&codes::OUT_OF_RANGE, at, what));
+        }
+    }
+
+    /// An expression of which no value of an enumeration may come.
+    pub(super) fn plain(&mut self, e: &mut Expr, place: Place<'_>) {
+        self.expect(e, None, place);
+    }
+
+    /// An expression whose value is one of an enumeration, or none of any.
+    pub(super) fn expect(&mut self, e: &mut Expr, wanted: Option<&str>, place: Place<'_>) {
+        let found = self.typed(e, place);
+        self.agree(found, wanted, e.at.0);
+    }
+
+    fn agree(&mut self, found: Option<&str>, wanted: Option<&str>, at: Span) {
+        let (what, help) = match (found, wanted) {
+            (Some(found), Some(wanted)) if found != wanted => (
+                say!("this is a value of `{found}`, and one of `{wanted}` is needed"),
+                self.values(wanted),
+            ),
+            (None, Some(wanted)) => (say!("a value of `{wanted}` is needed here"), self.values(wanted)),
+            (Some(found), None) => (
+                say!("a value of `{found}` cannot stand here"),
+                say!(
+                    "values of an enumeration are compared by `=` and `<>`; `{found}_TO_INT` gives the number of one"
+                ),
+            ),
+            _ => return,
+        };
+        self.problems.push(Problem::new(&codes::WRONG_TYPE, at, what).help(help));
+    }
+
+    fn values(&self, ty: &str) -> Said {
+        say!("its values are {}", Said::foreign(self.scopes.names_of(ty).join(", ")))
+    }
+
+    /// Replaces the values in an expression; the enumeration of its own value.
+    pub(super) fn typed(&mut self, e: &mut Expr, place: Place<'_>) -> Option<&'d str> {
+        let at = e.at;
+        match &mut e.kind {
+            ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => None,
+            ExprKind::Path(path) => {
+                let (found, number) = self.path(path, place, at.0);
+                if let Some(number) = number {
+                    e.kind = ExprKind::Literal(Literal::Int(number, None));
+                }
+                found
+            }
+            ExprKind::Element(path, index, bit) => {
+                index.iter_mut().for_each(|e| self.plain(e, place));
+                match self.scopes.find(path, place) {
+                    Found::Var(Var { holds: Holds::Values(ty), .. }, false) if bit.is_none() => Some(ty),
+                    _ => None,
+                }
+            }
+            ExprKind::Unary(_, a) => {
+                self.plain(a, place);
+                None
+            }
+            ExprKind::Binary(BinaryOp::Eq | BinaryOp::Ne, a, b) => {
+                self.same([&mut **a, &mut **b].into_iter(), place);
+                None
+            }
+            ExprKind::Binary(_, a, b) => {
+                self.plain(a, place);
+                self.plain(b, place);
+                None
+            }
+            ExprKind::Timer { t1, e, t2 } => {
+                self.plain(t1, place);
+                self.plain(e, place);
+                t2.iter_mut().for_each(|t| self.plain(t, place));
+                None
+            }
+            ExprKind::List(values) => {
+                values.iter_mut().for_each(|(_, e)| self.plain(e, place));
+                None
+            }
+            ExprKind::Call(path, args) => {
+                if let Some(number) = self.number_of(path, args, place) {
+                    *e = number;
+                    return None;
+                }
+                self.call(path, args, place)
+            }
+        }
+    }
+
+    /// The enumeration of a name, and the number if it is a value.
+    fn path(&mut self, path: &Path, place: Place<'_>, at: Span) -> (Option<&'d str>, Option<i128>) {
+        match self.scopes.find(path, place) {
+            Found::Var(Var { holds: Holds::Values(ty), .. }, false) => (Some(ty), None),
+            Found::Value(ty, number) => (Some(ty), Some(number)),
+            Found::Both(one, other) => {
+                let value = path.text();
+                let what = say!("`{value}` is a value of `{one}` and of `{other}`");
+                let problem = Problem::new(&codes::WRONG_TYPE, at, what);
+                self.problems.push(problem.help(say!("write `{one}.{value}` or `{other}.{value}`")));
+                (Some(one), Some(0))
+            }
+            Found::NoValue(ty) => {
+                let value = path.names.get(1).map_or("", |n| &*n.text);
+                let what = say!("`{}` has no value `{value}`", ty);
+                let at = path.names.get(1).map_or(at, |n| n.at.0);
+                let problem = Problem::new(&codes::UNKNOWN_MEMBER, at, what);
+                let names = self.scopes.names_of(ty);
+                self.problems.push(match crate::similar(value, &names) {
+                    Some(near) => problem.meant(near),
+                    None => problem.help(self.values(ty)),
+                });
+                (Some(ty), Some(0))
+            }
+            Found::Var(..) | Found::Other => (None, None),
+        }
+    }
+
+    /// Several expressions with values of one enumeration, or of none; that enumeration.
+    fn same<'e>(&mut self, mut list: impl Iterator<Item = &'e mut Expr>, place: Place<'_>) -> Option<&'d str> {
+        let first = list.next()?;
+        let found = self.typed(first, place);
+        let mut wanted = found;
+        for e in list {
+            let next = self.typed(e, place);
+            match wanted {
+                // The first one is a number beside a value.
+                None if next.is_some() => {
+                    self.agree(None, next, first.at.0);
+                    wanted = next;
+                }
+                _ => self.agree(next, wanted, e.at.0),
+            }
+        }
+        wanted
+    }
+
+    /// `Mode_TO_INT(mode)`: the number of a value.
+    fn number_of(&mut self, path: &Path, args: &mut [Arg], place: Place<'_>) -> Option<Expr> {
+        let [name] = path.names.as_slice() else { return None };
+        let ty = name.text.strip_suffix("_TO_INT")?;
+        let (ty, _) = self.scopes.enumerations.get_key_value(ty)?;
+        let (ty, [only]) = (*ty, args) else { return None };
+        self.expect(&mut only.value, Some(ty), place);
+        Some(only.value.clone())
+    }
+
+    fn call(&mut self, path: &Path, args: &mut [Arg], place: Place<'_>) -> Option<&'d str> {
+        let function = match path.names.as_slice() {
+            [name] => StandardFunction::named(&name.text),
+            _ => None,
+        };
+        let chosen = |arg: &Arg| arg.name.as_ref().is_some_and(|n| n.text.eq_ignore_ascii_case("G") || n.text.eq_ignore_ascii_case("K"));
+        use StandardFunction as F;
+        match function {
+            Some(F::Move | F::Operator(BinaryOp::Eq | BinaryOp::Ne)) => {
+                let ty = self.same(args.iter_mut().map(|a| &mut a.value), place);
+                ty.filter(|_| function == Some(F::Move))
+            }
+            Some(F::Sel | F::Mux) => {
+                let choice = args.iter().position(chosen).unwrap_or(0);
+                if let Some(arg) = args.get_mut(choice) {
+                    self.plain(&mut arg.value, place);
+                }
+                let others = args.iter_mut().enumerate().filter(|(n, _)| *n != choice);
+                self.same(others.map(|(_, a)| &mut a.value), place)
+            }
+            _ => {
+                args.iter_mut().for_each(|a| self.plain(&mut a.value, place));
+                None
+            }
+        }
+    }
+
+    /// The value of an assignment, as the variable can hold it.
+    pub(super) fn assigned(&mut self, target: &mut Expr, value: &mut Expr, place: Place<'_>) {
+        let (var, part) = self.target(target, place);
+        let holds = var.map_or(Holds::All, |v| v.holds);
+        match holds {
+            Holds::All => self.plain(value, place),
+            Holds::Values(_) | Holds::Range(..) if part => {
+                self.plain(value, place);
+                self.only_assigned(target);
+            }
+            Holds::Values(ty) => self.expect(value, Some(ty), place),
+            Holds::Range(low, high, ty) => {
+                self.plain(value, place);
+                let whole = var.is_some_and(|v| v.array) && matches!(target.kind, ExprKind::Path(_));
+                self.bounded(value, (low, high, ty), whole, place);
+            }
+        }
+    }
+
+    fn bounded(&mut self, value: &mut Expr, (low, high, ty): (i128, i128, Type), whole: bool, place: Place<'_>) {
+        if let Some(n) = self.number(value, place) {
+            return self.within(n, (low, high), value.at.0);
+        }
+        let source = match &value.kind {
+            ExprKind::Path(path) | ExprKind::Call(path, _) if whole => self.scopes.find(path, place),
+            ExprKind::Path(path) => self.scopes.find(path, place),
+            ExprKind::Element(path, _, None) => self.scopes.find(path, place),
+            _ => Found::Other,
+        };
+        if let Found::Var(Var { holds: Holds::Range(least, most, _), .. }, false) = source
+            && low <= least
+            && most <= high
+        {
+            return;
+        }
+        if whole {
+            let what = say!("an array with bounds is copied from one with the same or closer bounds");
+            let problem = Problem::new(&codes::WRONG_TYPE, value.at.0, what);
+            return self.problems.push(problem.help(say!("assign the elements in a FOR loop")));
+        }
+        let at = value.at;
+        let plain = std::mem::replace(value, Expr { kind: ExprKind::Bad, at });
+        *value = self.checks.held(plain, (low, high, ty), at);
+    }
+
+    /// The variable that a target is, and whether it is only a bit or member of it.
+    fn target(&mut self, target: &mut Expr, place: Place<'_>) -> (Option<Var<'d>>, bool) {
+        let (path, bit) = match &mut target.kind {
+            ExprKind::Path(path) => (&*path, false),
+            ExprKind::Element(path, index, bit) => {
+                index.iter_mut().for_each(|e| self.plain(e, place));
+                (&**path, bit.is_some())
+            }
+            _ => return (None, false),
+        };
+        match self.scopes.find(path, place) {
+            Found::Var(var, part) => (Some(var), part || bit),
+            _ => (None, false),
+        }
+    }
+
+    /// A target that something else than an assignment writes.
+    pub(super) fn written(&mut self, target: &mut Expr, place: Place<'_>) {
+        if let (Some(Var { holds: Holds::Values(_) | Holds::Range(..), .. }), _) = self.target(target, place) {
+            self.only_assigned(target);
+        }
+    }
+
+    fn only_assigned(&mut self, target: &Expr) {
+        let name = target.kind.variable().unwrap_or_default();
+        let what = say!("`{}` has bounds or is of an enumeration; only an assignment writes it", name);
+        let problem = Problem::new(&codes::WRONG_TYPE, target.at.0, what);
+        self.problems.push(problem.help(say!("use a variable without bounds here, and assign it")));
+    }
+}

@@ -1,0 +1,159 @@
+//! What the names of a document hold: enumerations, and variables of them or with bounds.
+
+use std::collections::HashMap;
+
+use super::declare::numbered;
+use crate::{ChartItem, Document, Item, Limits, Name, Path, Type, VarDecl, VarKind};
+
+/// What a variable can hold.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Holds<'d> {
+    /// All values of its type.
+    All,
+    /// The values of this enumeration.
+    Values(&'d str),
+    /// The whole numbers within bounds, of this type.
+    Range(i128, i128, Type),
+}
+
+/// A variable.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Var<'d> {
+    pub(super) holds: Holds<'d>,
+    pub(super) array: bool,
+    /// Of a constant with a written number, that.
+    pub(super) number: Option<i128>,
+}
+
+/// The meaning of a name.
+pub(super) enum Found<'d> {
+    /// A variable; behind it may stand a bit or a member.
+    Var(Var<'d>, bool),
+    /// A value of an enumeration, and its number.
+    Value(&'d str, i128),
+    /// An enumeration that has no such value.
+    NoValue(&'d str),
+    /// A value of two enumerations.
+    Both(&'d str, &'d str),
+    /// Something else.
+    Other,
+}
+
+/// Where an expression stands.
+#[derive(Clone, Copy)]
+pub(super) struct Place<'e> {
+    pub(super) chart: Option<&'e str>,
+    /// Names that hide those of the chart and of the file, and have no limits.
+    pub(super) locals: &'e [Box<str>],
+}
+
+type Vars<'d> = HashMap<&'d str, Var<'d>>;
+
+/// The enumerations and variables of a document.
+pub(super) struct Scopes<'d> {
+    file: Vars<'d>,
+    charts: HashMap<&'d str, Vars<'d>>,
+    pub(super) enumerations: HashMap<&'d str, Vec<(&'d Name, i128)>>,
+    /// Each value, with the enumerations that have it.
+    values: HashMap<&'d str, Vec<(&'d str, i128)>>,
+}
+
+impl<'d> Scopes<'d> {
+    pub(super) fn of(document: &'d Document) -> Scopes<'d> {
+        let mut made = Scopes {
+            file: HashMap::new(),
+            charts: HashMap::new(),
+            enumerations: HashMap::new(),
+            values: HashMap::new(),
+        };
+        for item in &document.items {
+            match item {
+                Item::Type(t) => made.enumeration(t),
+                Item::Var(v) => declare(&mut made.file, v),
+                Item::Chart(c) => {
+                    let vars = made.charts.entry(&*c.name.text).or_default();
+                    for item in &c.items {
+                        if let ChartItem::Var(v) = item {
+                            declare(vars, v);
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        made
+    }
+
+    fn enumeration(&mut self, t: &'d VarDecl) {
+        let (Some(name), Some(Limits::Values(values))) = (t.names.first(), t.limits.as_deref()) else { return };
+        // A value whose number is wrong has been reported.
+        let all: Vec<(&Name, i128)> =
+            numbered(values).into_iter().map(|(name, number)| (name, number.unwrap_or(0))).collect();
+        for (value, number) in &all {
+            let of = self.values.entry(&*value.text).or_default();
+            if of.iter().all(|(before, _)| **before != *name.text) {
+                of.push((&name.text, *number));
+            }
+        }
+        self.enumerations.insert(&name.text, all);
+    }
+
+    /// The meaning of a path.
+    pub(super) fn find(&self, path: &Path, place: Place<'_>) -> Found<'d> {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        let Some(first) = names.first() else { return Found::Other };
+        if place.locals.iter().any(|l| **l == **first) {
+            return Found::Other;
+        }
+        let own = place.chart.and_then(|c| self.charts.get(c)?.get(first)).or_else(|| self.file.get(first));
+        if let Some(var) = own {
+            return Found::Var(*var, names.len() > 1);
+        }
+        match names[..] {
+            [value] => match self.values.get(value).map(Vec::as_slice) {
+                Some([(ty, number)]) => Found::Value(ty, *number),
+                Some([(one, _), (other, _), ..]) => Found::Both(one, other),
+                Some([]) | None => Found::Other,
+            },
+            [ty, value, ..] => {
+                if let Some((ty, values)) = self.enumerations.get_key_value(ty) {
+                    let number = values.iter().find(|(name, _)| *name.text == *value).map(|(_, n)| *n);
+                    return match number {
+                        Some(number) if names.len() == 2 => Found::Value(ty, number),
+                        _ => Found::NoValue(ty),
+                    };
+                }
+                match self.charts.get(ty).and_then(|vars| vars.get(value)) {
+                    Some(var) => Found::Var(*var, names.len() > 2),
+                    None => Found::Other,
+                }
+            }
+            [] => Found::Other,
+        }
+    }
+
+    /// The names of the values of an enumeration.
+    pub(super) fn names_of(&self, ty: &str) -> Vec<&'d str> {
+        self.enumerations.get(ty).map_or(Vec::new(), |all| all.iter().map(|(name, _)| &*name.text).collect())
+    }
+}
+
+fn declare<'d>(vars: &mut Vars<'d>, v: &'d VarDecl) {
+    let number = v.init.as_ref().filter(|_| v.kind == VarKind::Const).and_then(|e| e.kind.whole());
+    let var = Var { holds: holds(v), array: v.array.is_some(), number };
+    for name in &v.names {
+        vars.entry(&*name.text).or_insert(var);
+    }
+}
+
+/// What the variables of a declaration can hold.
+pub(super) fn holds(v: &VarDecl) -> Holds<'_> {
+    match v.limits.as_deref() {
+        Some(Limits::Of(name)) => Holds::Values(&name.text),
+        Some(Limits::Range(least, most)) => match (least.kind.whole(), most.kind.whole()) {
+            (Some(low), Some(high)) => Holds::Range(low, high, v.ty),
+            _ => Holds::All,
+        },
+        Some(Limits::Values(_)) | None => Holds::All,
+    }
+}

@@ -1,0 +1,195 @@
+//! The walk through items, statements and plants, in which values are replaced and assignments checked.
+
+use super::held::Held;
+use super::scopes::Place;
+use crate::{
+    Action, ActionKind, Block, Body, CaseArm, ChartItem, Expr, ExprKind, Item, Name, Path, Plant, PlantItem,
+    Stmt, StmtKind, Target, Work,
+};
+
+impl Held<'_> {
+    /// An item that is neither a variable nor a chart.
+    pub(super) fn item(&mut self, item: &mut Item) {
+        match item {
+            Item::Action(a) => self.body(&mut a.body, None),
+            Item::Section(s) => self.block(&mut s.body, None, &[]),
+            Item::Pre(body, _) | Item::Post(body, _) => self.body(body, None),
+            Item::Function(f) => {
+                let own: Vec<Box<str>> =
+                    f.params.iter().map(|p| &p.name).chain([&f.name]).map(|n| n.text.clone()).collect();
+                self.block(&mut f.body, None, &own);
+            }
+            Item::Prove(p) => {
+                let place = Place { chart: None, locals: &[] };
+                p.kind.claims_mut().into_iter().for_each(|e| self.plain(e, place));
+            }
+            _ => {}
+        }
+    }
+
+    /// An item of a chart that is no variable.
+    pub(super) fn chart_item(&mut self, item: &mut ChartItem, chart: &str) {
+        let place = Place { chart: Some(chart), locals: &[] };
+        match item {
+            ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, place)),
+            ChartItem::Transition(t) => {
+                self.plain(&mut t.receptivity, place);
+                t.on_clearing.iter_mut().for_each(|b| self.block(b, Some(chart), &[]));
+            }
+            ChartItem::Pre(body, _) | ChartItem::Post(body, _) => self.body(body, Some(chart)),
+            ChartItem::Action(a) => self.body(&mut a.body, Some(chart)),
+            ChartItem::Section(s) => self.block(&mut s.body, Some(chart), &[]),
+            ChartItem::Var(_) => {}
+        }
+    }
+
+    fn action(&mut self, action: &mut Action, place: Place<'_>) {
+        match &mut action.kind {
+            ActionKind::Qualified { time, target, condition, .. } => {
+                time.iter_mut().chain(condition).for_each(|e| self.plain(e, place));
+                match target {
+                    Target::Work(work) => self.work(work, place),
+                    Target::Element(e) => self.written(e, place),
+                    Target::Path(path) => {
+                        let mut e =
+                            Expr { kind: ExprKind::Path(Path { names: path.names.clone() }), at: action.at };
+                        self.written(&mut e, place);
+                    }
+                    Target::Direct(..) => {}
+                }
+            }
+            ActionKind::OnEvent { event, work } => {
+                self.plain(event, place);
+                self.work(work, place);
+            }
+            ActionKind::EachScan { work, condition } => {
+                self.work(work, place);
+                condition.iter_mut().for_each(|e| self.plain(e, place));
+            }
+            ActionKind::Order(_) | ActionKind::Comment(_) => {}
+        }
+    }
+
+    fn work(&mut self, work: &mut Work, place: Place<'_>) {
+        match work {
+            Work::Block(block) => self.block(block, place.chart, &[]),
+            Work::Single(s) => self.statement(s, place),
+        }
+    }
+
+    fn body(&mut self, body: &mut Body, chart: Option<&str>) {
+        match body {
+            Body::St(block) => self.block(block, chart, &[]),
+            Body::Other(_, _, block) => {
+                let before = block.clone();
+                self.block(block, chart, &[]);
+                if *block != before {
+                    // The text of the other language no longer says what the statements do.
+                    *body = Body::St(std::mem::take(block));
+                }
+            }
+        }
+    }
+
+    fn block(&mut self, block: &mut Block, chart: Option<&str>, hidden: &[Box<str>]) {
+        let own = block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone());
+        let locals: Vec<Box<str>> = hidden.iter().cloned().chain(own).collect();
+        let place = Place { chart, locals: &locals };
+        block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.plain(e, place));
+        self.statements(&mut block.statements, place);
+    }
+
+    fn statements(&mut self, list: &mut [Stmt], place: Place<'_>) {
+        list.iter_mut().for_each(|s| self.statement(s, place));
+    }
+
+    fn statement(&mut self, s: &mut Stmt, place: Place<'_>) {
+        match &mut s.kind {
+            StmtKind::Assign { target, value } => self.assigned(target, value, place),
+            StmtKind::Call(_, args) => {
+                for arg in args {
+                    if arg.output {
+                        self.written(&mut arg.value, place);
+                    } else {
+                        self.plain(&mut arg.value, place);
+                    }
+                }
+            }
+            StmtKind::If(arms, otherwise) => {
+                for (condition, body) in arms {
+                    self.plain(condition, place);
+                    self.statements(body, place);
+                }
+                self.statements(otherwise, place);
+            }
+            StmtKind::Case(selector, arms, otherwise) => {
+                self.case(selector, arms, place);
+                self.statements(otherwise, place);
+            }
+            StmtKind::For { var, from, to, by, body } => {
+                self.loop_variable(var, place);
+                [from, to].into_iter().chain(by).for_each(|e| self.plain(e, place));
+                self.statements(body, place);
+            }
+            StmtKind::While(condition, body) | StmtKind::Repeat(body, condition) => {
+                self.plain(condition, place);
+                self.statements(body, place);
+            }
+            StmtKind::Exit | StmtKind::Return => {}
+        }
+    }
+
+    fn case(&mut self, selector: &mut Expr, arms: &mut [CaseArm], place: Place<'_>) {
+        let ty = self.typed(selector, place);
+        for arm in arms {
+            for (least, most) in &mut arm.labels {
+                self.expect(least, ty, place);
+                most.iter_mut().for_each(|e| self.expect(e, ty, place));
+            }
+            self.statements(&mut arm.body, place);
+        }
+    }
+
+    fn loop_variable(&mut self, var: &Name, place: Place<'_>) {
+        let path = Path { names: vec![var.clone()] };
+        self.written(&mut Expr { kind: ExprKind::Path(path), at: var.at }, place);
+    }
+
+    /// The items of a plant. Names of the plant hide those of the charts.
+    pub(super) fn plant_items(&mut self, plant: &mut Plant) {
+        let mut own: Vec<Box<str>> = Vec::new();
+        for item in &plant.items {
+            match item {
+                PlantItem::Const { names, .. } => own.extend(names.iter().map(|n| n.text.clone())),
+                PlantItem::State(s) => own.extend(s.names.iter().map(|n| n.text.clone())),
+                PlantItem::Parts(p) => own.push(p.name.text.clone()),
+                _ => {}
+            }
+        }
+        let place = Place { chart: None, locals: &own };
+        for item in &mut plant.items {
+            match item {
+                PlantItem::Const { value, .. } => self.plain(value, place),
+                PlantItem::State(s) => {
+                    s.init.iter_mut().for_each(|e| self.plain(e, place));
+                }
+                PlantItem::Rate(r) => {
+                    self.plain(&mut r.value, place);
+                    r.when.iter_mut().for_each(|e| self.plain(e, place));
+                }
+                PlantItem::Drive(d) => self.assigned(&mut d.input, &mut d.value, place),
+                PlantItem::On(e, block, _) => {
+                    self.plain(e, place);
+                    self.block(block, None, &own);
+                }
+                PlantItem::Each(block, _) => self.block(block, None, &own),
+                PlantItem::Arrivals(a) => {
+                    a.when.iter_mut().for_each(|e| self.plain(e, place));
+                    self.block(&mut a.body, None, &own);
+                }
+                PlantItem::View(v) => v.bindings.iter_mut().for_each(|b| self.plain(&mut b.value, place)),
+                PlantItem::Parts(_) => {}
+            }
+        }
+    }
+}
