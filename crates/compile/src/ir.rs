@@ -5,8 +5,12 @@
 //! typed: both operands of a binary operator have one type, conversions are explicit, targets are
 //! writable.
 
+use std::sync::Arc;
+
 use g7_engine::{Builtin, Rules};
 use g7_model::{FbKind, Nanos, ProfileName, Qualifier, Span, TargetPlc, Type};
+
+use crate::held::Held;
 
 macro_rules! ids {
     ($($(#[$doc:meta])* $name:ident)*) => {$(
@@ -97,6 +101,8 @@ pub struct Var {
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
+    /// What it holds, where that is less than all values of its type.
+    pub held: Option<Arc<Held>>,
     /// Number of elements: 1, except for the tables of a plant.
     pub elements: u32,
     /// Initial value (one for all elements).

@@ -12,6 +12,7 @@
 mod allow;
 pub mod check;
 mod circles;
+mod held;
 pub mod ir;
 pub mod lower;
 pub mod plant;
@@ -23,6 +24,7 @@ pub mod tree;
 
 use g7_model::{Document, Problem, Span, codes, say};
 
+pub use held::Held;
 pub use references::{Definition, References, references};
 pub use stages::{Compiled, compile, compile_as, compile_with};
 

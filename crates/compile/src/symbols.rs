@@ -4,9 +4,12 @@
 //! coverage, the terminal view, the place of a fault) translates through these tables. Names are
 //! stored one after another in one string, so that a hundred thousand steps cost two allocations.
 
+use std::sync::Arc;
+
 use g7_engine::{Addr, Duration, GroupId, State, StepId};
 use g7_model::{Holds, Nanos, Span, Type};
 
+use crate::held::Held;
 use crate::ir::VarClass;
 
 /// Many short texts in one string.
@@ -66,6 +69,8 @@ pub struct Variable {
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
+    /// What it holds, where that is less than all values of its type.
+    pub held: Option<Arc<Held>>,
     /// Its first word.
     pub addr: Addr,
     /// Number of elements: 1, except for tables.

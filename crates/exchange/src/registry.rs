@@ -5,8 +5,8 @@
 use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
 use g7_model::composed::decomposed;
-use g7_model::named::{declared, held};
 use g7_model::instances::instantiated;
+use g7_model::named::{declared, held};
 use g7_model::{Document, FileId, Problem};
 
 use crate::{arrays, classicladder, controlexpert, jgrafchart, l5x, mermaid, s7graph, xmi};

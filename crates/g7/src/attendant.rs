@@ -26,7 +26,6 @@ use crate::monitor::Monitor;
 use crate::operator::{Adopted, Asker, Changes, HELP, Names, Stage, Told, Wish, mode_text, operate};
 use crate::origin::Origin;
 use crate::post::Post;
-use crate::values;
 use crate::who::Who;
 
 /// The pause between two looks at the events.
@@ -339,7 +338,7 @@ impl Attendant {
         let name = name.trim_end_matches(':').trim();
         let bench = &self.names.bench;
         let item = bench.item(name).ok_or_else(|| bench.unknown(name).to_string())?;
-        let word = match values::read(value, item.kind).map_err(|e| e.to_string())? {
+        let word = match item.read(value).map_err(|e| e.to_string())? {
             Value::Word(word) => word,
             Value::Text(_) => return Err(format!("`{name}` is a text: it cannot be set here")),
         };

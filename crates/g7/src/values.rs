@@ -5,7 +5,7 @@ use std::ffi::OsStr;
 use clap::builder::{PossibleValue, TypedValueParser};
 use clap::{Arg, Command};
 use g7_model::{Nanos, ProfileName, TargetPlc, codes};
-pub(crate) use g7_rig::values::{duration, read};
+pub(crate) use g7_rig::values::duration;
 
 /// An argument that is read by a function, and whose usual words a shell and the help know.
 #[derive(Clone)]

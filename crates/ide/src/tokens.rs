@@ -110,7 +110,9 @@ pub fn tokens(file: &File, range: Range<usize>) -> Vec<Coloured> {
             Meaning::Step(..) => &mut steps,
             Meaning::Chart(_) => &mut charts,
             Meaning::Type(_) | Meaning::Named(_) => &mut types,
-            Meaning::Variable(..) | Meaning::Value(_) | Meaning::Member(_) | Meaning::Other(..) => &mut variables,
+            Meaning::Variable(..) | Meaning::Value(_) | Meaning::Member(_) | Meaning::Other(..) => {
+                &mut variables
+            }
         };
         list.insert(&*n.name.text);
     }

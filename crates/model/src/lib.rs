@@ -53,9 +53,9 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout, Limits,
-    NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
-    Transition, VarDecl, VarKind,
+    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
+    Limits, NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch,
+    TargetPlc, Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_name, element_parts, filled};
 pub use fix::{Fix, TextEdit};

@@ -6,10 +6,10 @@
 use crate::{
     Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
     ChartItem, ChartKind, Composed, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames,
-    Item, Layout, Limits, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place, PlaceAt,
-    Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said, Scenario,
-    Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc, TestStmt,
-    TestStmtKind, TextEdit, Transition, Type, UnaryOp, VarDecl, VarKind, View, Work,
+    Item, Layout, Limits, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place,
+    PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said,
+    Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc,
+    TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, VarDecl, VarKind, View, Work,
 };
 
 /// A part of a document that has places in a text.

@@ -8,8 +8,8 @@ use std::slice::from_ref;
 
 use crate::{
     Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Instance,
-    InstanceNames, Item, Limits, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target, TestStmt,
-    TestStmtKind, VarDecl, Work,
+    InstanceNames, Item, Limits, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target,
+    TestStmt, TestStmtKind, VarDecl, Work,
 };
 
 /// Receives every name of a document; the methods that visit an element visit all within it.
@@ -66,7 +66,9 @@ pub trait Visitor<'d> {
         self.exprs(v.array.iter().flat_map(|a| a.bounds()).chain(&v.init).chain(&v.safe));
         match v.limits.as_deref() {
             Some(Limits::Range(least, most)) => self.exprs([least, most]),
-            Some(Limits::Values(values)) => self.exprs(values.iter().filter_map(|(_, number)| number.as_ref())),
+            Some(Limits::Values(values)) => {
+                self.exprs(values.iter().filter_map(|(_, number)| number.as_ref()))
+            }
             Some(Limits::Of(_)) | None => {}
         }
     }

@@ -1,7 +1,10 @@
 //! Reads values that users type: on the command line, in the terminal view, in the page; and shows values.
 
+use g7_compile::Held;
 use g7_host::{Kind, Value};
 use g7_model::{Nanos, Said, say};
+
+use crate::Item;
 
 /// Reads a duration such as `1h30m`, `2.5s` or `500ms`. It must be more than 0; 0 itself is written
 /// `0s`.
@@ -108,6 +111,49 @@ pub fn shown(value: &Value, kind: Kind) -> String {
     let text = format!("{x:.4}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
+}
+
+impl Item {
+    /// Reads a value as users type it: of an enumeration its name, with or without the name of the type, or its number.
+    ///
+    /// # Errors
+    ///
+    /// A text that says what was expected.
+    pub fn read(&self, text: &str) -> Result<Value, Said> {
+        let Some(held) = &self.held else { return read(text, self.kind) };
+        let plain = text.trim();
+        let bare = plain.rsplit_once('.').map_or(plain, |(_, name)| name);
+        if let Some(number) = held.number_of(bare) {
+            return Ok(Value::Word(number as u64));
+        }
+        let names = Said::foreign(held.names().collect::<Vec<_>>().join(", "));
+        let value = read(text, self.kind);
+        let admitted = |v: &Value| held.admits(v.number(self.kind) as i128);
+        match (&**held, value) {
+            (_, Ok(value)) if admitted(&value) => Ok(value),
+            (Held::Range(least, most), Ok(_)) => {
+                let range = Said::foreign(format!("{least} .. {most}"));
+                Err(say!("`{plain}` is outside {range}"))
+            }
+            (Held::Range(..), Err(why)) => Err(why),
+            (Held::Names(..), _) => Err(say!("`{}` is one of {names}", self.name)),
+        }
+    }
+
+    /// A value as text for the user: of an enumeration its name.
+    pub fn show(&self, value: &Value) -> String {
+        let name = self.held.as_ref().and_then(|held| held.name_of(value.number(self.kind) as i128));
+        name.map_or_else(|| shown(value, self.kind), str::to_owned)
+    }
+
+    /// Its type as the text declares it: `INT`, `INT(0..100)`, `Mode`.
+    pub fn declared(&self) -> String {
+        match self.held.as_deref() {
+            Some(Held::Range(least, most)) => format!("{}({least}..{most})", self.ty),
+            Some(Held::Names(name, _)) => name.to_string(),
+            None => self.ty.to_string(),
+        }
+    }
 }
 
 #[cfg(test)]

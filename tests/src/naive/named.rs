@@ -11,7 +11,8 @@ use super::value::{NaiveFault, Run, Typed, Value};
 
 /// The types of a file that are no structures and function blocks.
 pub(super) fn named(doc: &Document) -> BTreeMap<String, VarDecl> {
-    let one = |i: &Item| if let Item::Type(t) = i { Some((t.names[0].text.to_string(), t.clone())) } else { None };
+    let one =
+        |i: &Item| if let Item::Type(t) = i { Some((t.names[0].text.to_string(), t.clone())) } else { None };
     doc.items.iter().filter_map(one).collect()
 }
 
@@ -50,10 +51,9 @@ impl Model {
         }
         let first = match own.limits.as_deref() {
             Some(Limits::Range(least, _)) => Some(least.clone()),
-            Some(Limits::Values(_)) => numbers(&own).first().map(|(_, n)| Expr {
-                kind: ExprKind::Literal(Literal::Int(*n, None)),
-                at: own.at,
-            }),
+            Some(Limits::Values(_)) => numbers(&own)
+                .first()
+                .map(|(_, n)| Expr { kind: ExprKind::Literal(Literal::Int(*n, None)), at: own.at }),
             _ => None,
         };
         match own.array {
@@ -79,7 +79,8 @@ impl Model {
             _ => return None,
         };
         let mut of = self.named.iter().filter(|(name, _)| ty.is_none_or(|ty| **name == *ty));
-        of.find_map(|(_, t)| numbers(t).into_iter().find(|(name, _)| name == value)).map(|(_, n)| Ref::Value(n))
+        of.find_map(|(_, t)| numbers(t).into_iter().find(|(name, _)| name == value))
+            .map(|(_, n)| Ref::Value(n))
     }
 }
 

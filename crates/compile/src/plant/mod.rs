@@ -24,11 +24,12 @@ pub use program::{Binding, Link, PlantProgram, compile_plant};
 use std::collections::HashMap;
 
 use g7_model::{
-    BinaryOp, Block, Body, Document, Expr, Item, Name, Place, Plant, PlantItem, Problem, Said, Stmt, Type,
-    VarDecl, VarKind, codes, say,
+    BinaryOp, Block, Body, Document, Expr, Item, Limits, Name, Place, Plant, PlantItem, Problem, Said, Stmt,
+    Type, VarDecl, VarKind, codes, say,
 };
 
-use crate::ir::{Unit, VarClass};
+use crate::held::Held;
+use crate::ir::{Unit, Var, VarClass};
 use build::At;
 use parts::Table;
 use rewrite::Rewrite;
@@ -183,6 +184,7 @@ impl<'d> Maker<'d> {
             called.extend(inside.called);
         }
         let shared = |item: &Item| match item {
+            Item::Type(_) => Some(item.clone()),
             Item::Function(f) => called.contains(&f.name.text).then(|| item.clone()),
             Item::Var(v) if v.kind == VarKind::Const => {
                 let mut v = v.clone();
@@ -203,6 +205,7 @@ impl<'d> Maker<'d> {
         for v in outputs.filter(|v| !self.own.contains_key(&*v.name)) {
             let mut decl = At(v.at.into()).declare(VarKind::Input, &v.name, v.ty, None);
             decl.at = at.0;
+            decl.limits = enumeration(v);
             self.vars.push(decl);
             names.push(v.name.clone());
         }
@@ -360,7 +363,8 @@ impl<'d> Maker<'d> {
         };
         let hidden = driven(&name);
         let value = self.rewrite.expr(&d.value);
-        self.vars.push(At(d.at).declare(VarKind::Output, &hidden, input.ty, None));
+        let limits = enumeration(input);
+        self.vars.push(VarDecl { limits, ..At(d.at).declare(VarKind::Output, &hidden, input.ty, None) });
         self.drives.push(At(d.at).assign(&hidden, value));
     }
 
@@ -418,6 +422,16 @@ impl<'d> Maker<'d> {
 /// with the name of the input.
 fn driven(input: &str) -> String {
     format!("@drive.{input}")
+}
+
+/// The enumeration of a variable of the charts.
+fn enumeration(v: &Var) -> Option<Box<Limits>> {
+    match v.held.as_deref() {
+        Some(Held::Names(name, _)) => {
+            Some(Box::new(Limits::Of(Name { text: name.clone(), at: v.at.into() })))
+        }
+        Some(Held::Range(..)) | None => None,
+    }
 }
 
 /// Plants of a document, in the order of the text.

@@ -1,6 +1,7 @@
 //! The program of a plant, and how its words are coupled to those of the charts.
 
 use g7_engine::{Addr, Code};
+use g7_model::named::declared;
 use g7_model::{Document, Expr, Plant, Problem, ProfileName, Severity, Type, codes};
 
 use super::{document, driven};
@@ -60,7 +61,8 @@ pub fn compile_plant(
     charts: &Compiled,
     queries: &[Expr],
 ) -> (Option<PlantProgram>, Vec<Problem>) {
-    let (made, mut problems) = document(doc, plant, &charts.unit, queries);
+    let (typed, _) = declared(doc); // Its problems are those of the charts.
+    let (made, mut problems) = document(&typed, plant, &charts.unit, queries);
     let mut asked = made.queries;
     asked.extend(made.bindings.iter().map(|(_, _, value)| value.clone()));
     // A tick is one pass in every profile, because a plant has no charts.

@@ -136,10 +136,14 @@ impl<'d> Types<'d> {
     /// The names of a path that is a value of an enumeration: `Automatic`, `Mode.Automatic`. None for other paths, and for
     /// a value of two enumerations.
     pub(super) fn value(&self, names: &[Name]) -> Vec<Traced> {
-        let value = |of: &Name, name: &Name| Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
+        let value = |of: &Name, name: &Name| Definition::Value {
+            of: of.text.to_string(),
+            name: name.text.to_string(),
+        };
         match names {
             [only] => {
-                let mut all = self.others.values().flat_map(|t| values(t)).filter(|(_, v)| v.text == only.text);
+                let mut all =
+                    self.others.values().flat_map(|t| values(t)).filter(|(_, v)| v.text == only.text);
                 match (all.next(), all.next()) {
                     (Some((of, name)), None) => vec![(0, value(of, name), 0)],
                     _ => Vec::new(),
@@ -184,7 +188,9 @@ impl<'d> Types<'d> {
         if let Some(composed) = self.named(name) {
             return Kind::Composed(composed);
         }
-        let Some(t) = self.others.get(name).filter(|_| passed < self.others.len()) else { return Kind::Unknown };
+        let Some(t) = self.others.get(name).filter(|_| passed < self.others.len()) else {
+            return Kind::Unknown;
+        };
         match &t.of {
             Some(of) => self.kind_named(&of.text, passed + 1),
             None => Kind::Plain(t.ty),

@@ -5,9 +5,9 @@ use std::collections::{HashMap, HashSet};
 use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
-    Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item, Limits,
-    Name, Order, Path, Placed, Plant, PlantItem, Situation, Span, Step, StepKind, Transition, VarDecl,
-    chart_in, instance_of, slot_of,
+    Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item,
+    Limits, Name, Order, Path, Placed, Plant, PlantItem, Situation, Span, Step, StepKind, Transition,
+    VarDecl, chart_in, instance_of, slot_of,
 };
 
 use super::members::{Kind, Member, Types, values};

@@ -23,6 +23,7 @@ use super::refer::Ref;
 use super::resolver::Resolver;
 use super::scopes::{Array, Entity};
 use super::types::{Typed, converted};
+use crate::held::held;
 use crate::ir::{
     BinaryOp, ChartId, Elements, Expr, ExprKind, Stmt, StmtKind, Target, Value, VarClass, VarId,
 };
@@ -77,6 +78,7 @@ impl<'d> Resolver<'_, 'd> {
         // The names of an array that cannot be are known all the same, so that their uses are no problems of their own.
         let dimensions = self.fitting_array(decl, written).unwrap_or_default();
         let mut ids = Vec::new();
+        let held = held(decl, &self.scopes.enumerations);
         for name in &decl.names {
             let number = self.scopes.arrays.len() as u32;
             if !self.define(chart, name, Entity::Array(number)) {
@@ -93,6 +95,7 @@ impl<'d> Resolver<'_, 'd> {
                 let element = array.element_name(place).into();
                 let id = self.add_var(element, class, decl.ty, name.at.0);
                 if let Some(v) = self.unit.vars.get_mut(id.index()) {
+                    v.held.clone_from(&held);
                     v.retain = decl.retain;
                     v.inverted = decl.inverted;
                     v.comment.clone_from(&decl.comment);

@@ -42,6 +42,7 @@ use g7_model::{
     Chart, ChartItem, Document, Expr as Written, Item, Nanos, Problem, ProfileName, Type, codes, say,
 };
 
+use crate::held;
 use crate::ir::{ChartId, Expr, Unit};
 use resolver::{Frame, Resolver, Role};
 pub use rules::{of_profile, with_switch};
@@ -137,6 +138,9 @@ fn settings(doc: &Document, unit: &mut Unit, problems: &mut Vec<Problem>) {
 /// those of the file first.
 #[inline(never)]
 fn declare_names<'d>(r: &mut Resolver<'_, 'd>, doc: &'d Document, charts: &[&'d Chart]) {
+    let types =
+        doc.items.iter().filter_map(|i| if let Item::Type(t) = i { held::enumeration(t) } else { None });
+    r.scopes.enumerations = types.collect();
     let mut declared = Vec::new();
     for item in &doc.items {
         match item {

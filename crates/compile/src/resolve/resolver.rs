@@ -104,6 +104,7 @@ impl<'u, 'd> Resolver<'u, 'd> {
             name,
             class,
             ty,
+            held: None,
             elements: 1,
             init: zero(ty),
             table: Vec::new(),

@@ -7,9 +7,11 @@
 
 use std::collections::hash_map::Entry;
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 use g7_model::{Span, Type};
 
+use crate::held::Held;
 use crate::ir::{BodyId, ChartId, FunctionId, SectionId, StepId, VarId};
 
 /// The meaning of a name of a file or chart, except charts and steps.
@@ -82,6 +84,8 @@ pub struct Scopes<'d> {
     pub(super) step_homes: HashMap<&'d str, Homes>,
     /// Arrays, in the order of the text.
     pub(super) arrays: Vec<Array>,
+    /// The values of the enumerations, by their names.
+    pub(super) enumerations: HashMap<&'d str, Arc<Held>>,
     /// Direct addresses, upper case without the `%`.
     pub(super) addresses: HashMap<String, VarId>,
     /// Outputs of sections: written by their section only.

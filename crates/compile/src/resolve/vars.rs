@@ -6,6 +6,7 @@ use g7_model::{
 
 use super::resolver::{Frame, Resolver, Role};
 use super::scopes::{Entity, normal_address};
+use crate::held::held;
 use crate::ir::{ChartId, ExprKind, Value, VarClass, VarId};
 
 impl<'d> Resolver<'_, 'd> {
@@ -57,6 +58,7 @@ impl<'d> Resolver<'_, 'd> {
         if decl.array.is_some() {
             return self.declare_arrays(chart, decl, class);
         }
+        let held = held(decl, &self.scopes.enumerations);
         let mut ids = Vec::new();
         for name in &decl.names {
             let qualified = self.qualified(chart, &name.text);
@@ -71,6 +73,7 @@ impl<'d> Resolver<'_, 'd> {
             }
             self.place_at_address(id, decl);
             if let Some(v) = self.unit.vars.get_mut(id.index()) {
+                v.held.clone_from(&held);
                 v.retain = decl.retain;
                 v.inverted = decl.inverted;
                 v.comment.clone_from(&decl.comment);

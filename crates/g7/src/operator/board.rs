@@ -10,7 +10,7 @@ use g7_online::{
     FORCES, Forced, Happened, LONGEST, Mode, Paces, Quality, Sight, Spread, Target, USUAL, WhileBad, Wire,
 };
 use g7_page::{Places, Show};
-use g7_rig::{Activity, Item, Role, values};
+use g7_rig::{Activity, Item, Role};
 use serde_json::{Map, Value, json};
 
 use super::names::{Known, Names};
@@ -391,7 +391,7 @@ impl Board {
                 bench.value_in(self.sight.state(), item)
             }
         };
-        (values::shown(&value, item.kind), self.quality(row.point, drives))
+        (item.show(&value), self.quality(row.point, drives))
     }
 
     fn quality(&self, point: At, drives: bool) -> &'static str {

@@ -10,7 +10,6 @@ use g7_rig::{Bench, Item, Role, Source};
 
 use super::order::Wish;
 use super::picture::View;
-use crate::values;
 
 /// A chart and its wiring.
 pub(crate) struct Known {
@@ -79,7 +78,7 @@ impl Names {
     /// The name of a forced variable, and its value as text.
     pub(crate) fn value_of(&self, force: Forced) -> (&str, String) {
         let Some(item) = self.forced(force.what) else { return ("", String::new()) };
-        (&item.name, g7_rig::values::shown(&g7_host::Value::Word(force.word), item.kind))
+        (&item.name, item.show(&g7_host::Value::Word(force.word)))
     }
 
     /// Why the charts or the plant ended, with the place in the text.
@@ -110,7 +109,7 @@ impl Names {
             Wish::Cold => Command::Restart(g7_host::Start::Cold),
             Wish::Force { name, value, seconds } => {
                 let (item, what) = self.forcible(name)?;
-                let word = values::read(value, item.kind).map_err(|e| e.to_string())?.word();
+                let word = item.read(value).map_err(|e| e.to_string())?.word();
                 Command::Force(what, word, Nanos::SECOND * i64::from(*seconds))
             }
             Wish::Release { name } => Command::Release(self.forcible(name)?.1),

@@ -10,7 +10,6 @@ use super::names::Names;
 use super::order::Wish;
 use super::stage::Asker;
 use super::told::Told;
-use crate::values;
 
 /// The hand of the terminal; those of pages are addresses, which are never 0.
 const TERMINAL: u64 = 0;
@@ -54,7 +53,7 @@ fn number(names: &Names, name: &str, part: &Part, text: &str) -> Result<(f64, St
         return Ok((place as f64, text.trim().to_owned()));
     }
     let item = names.bench.item(name).ok_or_else(|| names.bench.unknown(name).to_string())?;
-    let value = values::read(text, item.kind).map_err(|e| e.to_string())?;
+    let value = item.read(text).map_err(|e| e.to_string())?;
     let word = match value {
         Value::Word(word) => word,
         Value::Text(_) => return Err(format!("`{name}` is a text")),
@@ -65,5 +64,5 @@ fn number(names: &Names, name: &str, part: &Part, text: &str) -> Result<(f64, St
         g7_online::Raw::Whole(n) => n as f64,
         g7_online::Raw::Real(x) => x,
     };
-    Ok((number, g7_rig::values::shown(&Value::Word(word), item.kind)))
+    Ok((number, item.show(&Value::Word(word))))
 }

@@ -155,9 +155,8 @@ fn in_words(bench: &Bench, moves: &[Move]) -> Vec<String> {
     let (mut before, mut found) = (Vec::new(), Vec::new());
     repeat(bench, moves, |runner| {
         let inputs = bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
-        let all: Vec<String> = inputs
-            .map(|i| format!("{} = {}", i.name, bench.value_in(runner.state(), i).show(i.kind)))
-            .collect();
+        let all: Vec<String> =
+            inputs.map(|i| format!("{} = {}", i.name, i.show(&bench.value_in(runner.state(), i)))).collect();
         let new: Vec<&str> = all.iter().filter(|text| !before.contains(*text)).map(String::as_str).collect();
         let inputs = if new.is_empty() { told(&say!("the same inputs")) } else { new.join(", ") };
         let now = raw(Nanos::new(runner.state().now()).plain());

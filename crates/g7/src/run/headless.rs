@@ -16,7 +16,7 @@ use crate::failure::{Failure, Verdict, raw};
 use crate::message::{note, talk, tell, told, wrote};
 use crate::progress::Progress;
 use crate::sources::Source;
-use crate::{files, style, values};
+use crate::{files, style};
 use g7_model::{Nanos, Said, say};
 use g7_rig::{Bench, Conflicts, Item, Role};
 
@@ -103,8 +103,8 @@ fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(Nanos, &'b Item, Valu
         let Some(item) = bench.item(&assign.name) else {
             return Err(Failure::Usage(say!("--set: {}", bench.unknown(&assign.name))));
         };
-        let value = values::read(&assign.value, item.kind)
-            .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name))))?;
+        let value =
+            item.read(&assign.value).map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name))))?;
         script.push((assign.at, item, value));
     }
     script.sort_by_key(|(at, ..)| *at);

@@ -5,7 +5,7 @@ use g7_host::{Clock, Halt, Kind, Recording, Runner, Start, Value, WallClock};
 use crate::cli::Run;
 use crate::failure::{Failure, raw};
 use crate::message::told;
-use crate::values::{self, Assign};
+use crate::values::Assign;
 use g7_model::{Nanos, say};
 use g7_rig::{Bench, Conflicts, Item, Role, Table};
 
@@ -99,8 +99,7 @@ impl<'b> App<'b> {
             let Some(item) = bench.item(&assign.name) else {
                 return Err(Failure::Usage(say!("--set: {}", bench.unknown(&assign.name))));
             };
-            values::read(&assign.value, item.kind)
-                .map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name))))?;
+            item.read(&assign.value).map_err(|e| Failure::Usage(say!("--set {}: {e}", raw(&assign.name))))?;
         }
         Ok(App {
             bench,
@@ -187,7 +186,7 @@ impl<'b> App<'b> {
         while self.script.last().is_some_and(|a| a.at <= self.runner.due()) {
             let Some(assign) = self.script.pop() else { return };
             let Some(item) = self.bench.item(&assign.name) else { continue };
-            if let Ok(value) = values::read(&assign.value, item.kind) {
+            if let Ok(value) = item.read(&assign.value) {
                 self.put(item, &value);
             }
         }
@@ -346,7 +345,7 @@ impl<'b> App<'b> {
     pub(super) fn accept(&mut self) {
         let Some(mut edit) = self.edit.take() else { return };
         let Some(item) = self.bench.items.get(edit.item) else { return };
-        match values::read(&edit.text, item.kind) {
+        match item.read(&edit.text) {
             Ok(value) => self.put(item, &value),
             Err(why) => {
                 edit.why = told(&why);

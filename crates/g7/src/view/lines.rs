@@ -50,7 +50,7 @@ pub(super) fn item_line<'a>(
         spans.push(Span::styled(if on { "● " } else { "○ " }, if on { ON } else { DIM }));
         spans.push(Span::styled(item.name.as_str(), if on { ON } else { Style::new() }));
     } else {
-        let value = format!(" = {}", short(&value.show(item.kind)));
+        let value = format!(" = {}", short(&item.show(&value)));
         let taken: usize = spans.iter().map(Span::width).sum::<usize>() + value.chars().count();
         spans.push(Span::raw(cut(&item.name, room.saturating_sub(taken)) + &value));
     }

@@ -4,8 +4,8 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
 use crate::{
-    Array, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span, Type,
-    VarDecl, VarKind, codes, say,
+    Array, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span,
+    Type, VarDecl, VarKind, codes, say,
 };
 
 /// Most values of an enumeration.
@@ -100,8 +100,11 @@ impl<'d> Types<'d> {
             return;
         }
         if let Some(place) = way.iter().position(|on| on.names.first().is_some_and(|n| n.text == name.text)) {
-            let mut problem =
-                Problem::new(&codes::RECURSION, name.at.0, say!("the type `{}` stands for itself", name.text));
+            let mut problem = Problem::new(
+                &codes::RECURSION,
+                name.at.0,
+                say!("the type `{}` stands for itself", name.text),
+            );
             for on in way.iter().skip(place + 1).flat_map(|on| on.names.first()) {
                 problem = problem.related(on.at.0, say!("by way of `{}`", on.text));
             }
@@ -183,7 +186,8 @@ impl<'d> Types<'d> {
         Some(match item {
             Item::Type(t) => {
                 let name = &t.names.first()?.text;
-                let kept = matches!(t.limits.as_deref(), Some(Limits::Values(_))) && self.known.contains_key(&**name);
+                let kept = matches!(t.limits.as_deref(), Some(Limits::Values(_)))
+                    && self.known.contains_key(&**name);
                 return kept.then(|| item.clone());
             }
             Item::Var(v) => {
@@ -300,7 +304,7 @@ impl<'d> Types<'d> {
 }
 
 /// The values with their numbers: without one, the next after the value before. None where there is no such number.
-pub(super) fn numbered(values: &[(Name, Option<Expr>)]) -> Vec<(&Name, Option<i128>)> {
+pub fn numbered(values: &[(Name, Option<Expr>)]) -> Vec<(&Name, Option<i128>)> {
     let fits = |n: &i128| Type::Int.bounds().is_some_and(|(least, most)| (least..=most).contains(n));
     let mut next = Some(0_i128);
     let mut all = Vec::new();

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use super::checks::Checks;
 use super::scopes::{Found, Holds, Place, Scopes, Var};
 use crate::{
-    Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Plant, Problem,
-    Said, Span, StandardFunction, Type, VarDecl, codes, say,
+    Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Problem, Said,
+    Span, StandardFunction, Type, VarDecl, codes, say,
 };
 
 /// The document with numbers in the place of values of enumerations, and with checks of what variables with bounds
@@ -52,14 +52,6 @@ impl<'d> Held<'d> {
         (e, std::mem::take(&mut self.problems))
     }
 
-    /// A plant with numbers in the place of values.
-    pub fn plant(&mut self, plant: &Plant) -> (Plant, Vec<Problem>) {
-        let mut own = plant.clone();
-        self.problems.clear();
-        self.plant_items(&mut own);
-        (own, std::mem::take(&mut self.problems))
-    }
-
     fn document(mut self, document: &Document) -> (Document, Vec<Problem>) {
         let mut items = Vec::new();
         for item in &document.items {
@@ -85,7 +77,7 @@ impl<'d> Held<'d> {
         }
     }
 
-    /// The values of a declaration. Bounds are no longer needed afterwards.
+    /// The values of a declaration.
     fn declaration(&mut self, v: &mut VarDecl, chart: Option<&str>) {
         let place = Place { chart, locals: &[] };
         let limits = v.limits.take();
@@ -106,7 +98,7 @@ impl<'d> Held<'d> {
                 _ => self.value_of(e, wanted, range, place),
             }
         }
-        v.limits = limits.filter(|l| matches!(**l, Limits::Of(_)));
+        v.limits = limits;
     }
 
     fn value_of(
@@ -160,10 +152,9 @@ impl<'d> Held<'d> {
 
     fn agree(&mut self, found: Option<&str>, wanted: Option<&str>, at: Span) {
         let (what, help) = match (found, wanted) {
-            (Some(found), Some(wanted)) if found != wanted => (
-                say!("this is a value of `{found}`, and one of `{wanted}` is needed"),
-                self.values(wanted),
-            ),
+            (Some(found), Some(wanted)) if found != wanted => {
+                (say!("this is a value of `{found}`, and one of `{wanted}` is needed"), self.values(wanted))
+            }
             (None, Some(wanted)) => (say!("a value of `{wanted}` is needed here"), self.values(wanted)),
             (Some(found), None) => (
                 say!("a value of `{found}` cannot stand here"),
@@ -261,7 +252,11 @@ impl<'d> Held<'d> {
     }
 
     /// Several expressions with values of one enumeration, or of none; that enumeration.
-    fn same<'e>(&mut self, mut list: impl Iterator<Item = &'e mut Expr>, place: Place<'_>) -> Option<&'d str> {
+    fn same<'e>(
+        &mut self,
+        mut list: impl Iterator<Item = &'e mut Expr>,
+        place: Place<'_>,
+    ) -> Option<&'d str> {
         let first = list.next()?;
         let found = self.typed(first, place);
         let mut wanted = found;
@@ -294,7 +289,11 @@ impl<'d> Held<'d> {
             [name] => StandardFunction::named(&name.text),
             _ => None,
         };
-        let chosen = |arg: &Arg| arg.name.as_ref().is_some_and(|n| n.text.eq_ignore_ascii_case("G") || n.text.eq_ignore_ascii_case("K"));
+        let chosen = |arg: &Arg| {
+            arg.name
+                .as_ref()
+                .is_some_and(|n| n.text.eq_ignore_ascii_case("G") || n.text.eq_ignore_ascii_case("K"))
+        };
         use StandardFunction as F;
         match function {
             Some(F::Move | F::Operator(BinaryOp::Eq | BinaryOp::Ne)) => {
@@ -335,7 +334,13 @@ impl<'d> Held<'d> {
         }
     }
 
-    fn bounded(&mut self, value: &mut Expr, (low, high, ty): (i128, i128, Type), whole: bool, place: Place<'_>) {
+    fn bounded(
+        &mut self,
+        value: &mut Expr,
+        (low, high, ty): (i128, i128, Type),
+        whole: bool,
+        place: Place<'_>,
+    ) {
         if let Some(n) = self.number(value, place) {
             return self.within(n, (low, high), value.at.0);
         }
@@ -379,7 +384,8 @@ impl<'d> Held<'d> {
 
     /// A target that something else than an assignment writes.
     pub(super) fn written(&mut self, target: &mut Expr, place: Place<'_>) {
-        if let (Some(Var { holds: Holds::Values(_) | Holds::Range(..), .. }), _) = self.target(target, place) {
+        if let (Some(Var { holds: Holds::Values(_) | Holds::Range(..), .. }), _) = self.target(target, place)
+        {
             self.only_assigned(target);
         }
     }

@@ -22,5 +22,5 @@ mod held;
 mod scopes;
 mod walk;
 
-pub use declare::declared;
+pub use declare::{declared, numbered};
 pub use held::{Held, held};

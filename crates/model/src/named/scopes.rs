@@ -85,7 +85,9 @@ impl<'d> Scopes<'d> {
     }
 
     fn enumeration(&mut self, t: &'d VarDecl) {
-        let (Some(name), Some(Limits::Values(values))) = (t.names.first(), t.limits.as_deref()) else { return };
+        let (Some(name), Some(Limits::Values(values))) = (t.names.first(), t.limits.as_deref()) else {
+            return;
+        };
         // A value whose number is wrong has been reported.
         let all: Vec<(&Name, i128)> =
             numbered(values).into_iter().map(|(name, number)| (name, number.unwrap_or(0))).collect();

@@ -1,10 +1,10 @@
-//! The walk through items, statements and plants, in which values are replaced and assignments checked.
+//! The walk through items and statements, in which values are replaced and assignments checked.
 
 use super::held::Held;
 use super::scopes::Place;
 use crate::{
-    Action, ActionKind, Block, Body, CaseArm, ChartItem, Expr, ExprKind, Item, Name, Path, Plant, PlantItem,
-    Stmt, StmtKind, Target, Work,
+    Action, ActionKind, Block, Body, CaseArm, ChartItem, Expr, ExprKind, Item, Name, Path, Stmt, StmtKind,
+    Target, Work,
 };
 
 impl Held<'_> {
@@ -153,43 +153,5 @@ impl Held<'_> {
     fn loop_variable(&mut self, var: &Name, place: Place<'_>) {
         let path = Path { names: vec![var.clone()] };
         self.written(&mut Expr { kind: ExprKind::Path(path), at: var.at }, place);
-    }
-
-    /// The items of a plant. Names of the plant hide those of the charts.
-    pub(super) fn plant_items(&mut self, plant: &mut Plant) {
-        let mut own: Vec<Box<str>> = Vec::new();
-        for item in &plant.items {
-            match item {
-                PlantItem::Const { names, .. } => own.extend(names.iter().map(|n| n.text.clone())),
-                PlantItem::State(s) => own.extend(s.names.iter().map(|n| n.text.clone())),
-                PlantItem::Parts(p) => own.push(p.name.text.clone()),
-                _ => {}
-            }
-        }
-        let place = Place { chart: None, locals: &own };
-        for item in &mut plant.items {
-            match item {
-                PlantItem::Const { value, .. } => self.plain(value, place),
-                PlantItem::State(s) => {
-                    s.init.iter_mut().for_each(|e| self.plain(e, place));
-                }
-                PlantItem::Rate(r) => {
-                    self.plain(&mut r.value, place);
-                    r.when.iter_mut().for_each(|e| self.plain(e, place));
-                }
-                PlantItem::Drive(d) => self.assigned(&mut d.input, &mut d.value, place),
-                PlantItem::On(e, block, _) => {
-                    self.plain(e, place);
-                    self.block(block, None, &own);
-                }
-                PlantItem::Each(block, _) => self.block(block, None, &own),
-                PlantItem::Arrivals(a) => {
-                    a.when.iter_mut().for_each(|e| self.plain(e, place));
-                    self.block(&mut a.body, None, &own);
-                }
-                PlantItem::View(v) => v.bindings.iter_mut().for_each(|b| self.plain(&mut b.value, place)),
-                PlantItem::Parts(_) => {}
-            }
-        }
     }
 }

@@ -7,7 +7,7 @@ use g7_engine::{Program, State};
 use g7_host::{Value, read_text};
 use g7_ide::ids;
 use g7_model::{Nanos, Type};
-use g7_rig::{Activity, Item, Role, values};
+use g7_rig::{Activity, Item, Role};
 use serde::Serialize;
 
 use super::running::Run;
@@ -120,7 +120,7 @@ fn frame(run: &mut Run, full: bool, times: bool) -> Frame {
         times: times.then(|| step_times(run, &active)),
         enabled: marks,
         cleared: std::mem::take(&mut run.cleared).into_iter().collect(),
-        values: changed.map(|((i, item), v)| (i, values::shown(v, item.kind), v.number(item.kind))).collect(),
+        values: changed.map(|((i, item), v)| (i, item.show(v), v.number(item.kind))).collect(),
         forced: (0u32..)
             .zip(&forced)
             .filter(|(i, f)| sent.forced.get(*i as usize).copied().unwrap_or(false) != **f)

@@ -10,7 +10,7 @@ use g7_engine::StepId;
 use g7_host::{Kind, Recording, Runner, Start as Restart, Value};
 use g7_ide::Positions;
 use g7_model::{Document, Language, Nanos, Said, say};
-use g7_rig::{Activity, Bench, Conflicts, Item, Role, values};
+use g7_rig::{Activity, Bench, Conflicts, Item, Role};
 
 use super::past::{self, Event, Past};
 use super::places::Places;
@@ -215,7 +215,7 @@ impl Run {
     /// Sets an input, a variable or a state of the plant once.
     pub(crate) fn set(&mut self, signal: usize, value: &str) -> Result<(), Said> {
         let item = self.settable(signal)?;
-        let value = values::read(value, item.kind)?;
+        let value = item.read(value)?;
         self.put(signal, &value)
     }
 
@@ -262,7 +262,7 @@ impl Run {
         if item.role == Role::Plant {
             return Err(say!("`{}` is a state of the plant: it can be set, not forced", item.name));
         }
-        let value = values::read(value, item.kind)?;
+        let value = item.read(value)?;
         self.come(Event::Force(signal, value));
         Ok(())
     }

@@ -45,6 +45,9 @@ struct SignalRow {
     #[serde(rename = "type")]
     ty: SignalType,
     declared: String,
+    /// Of an enumeration: the names of its values.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    choices: Option<Vec<String>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     comment: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -163,7 +166,12 @@ impl Run {
                 Kind::Time => SignalType::Time,
                 Kind::Text => SignalType::Text,
             },
-            declared: item.ty.to_string(),
+            declared: item.declared(),
+            choices: item
+                .held
+                .as_ref()
+                .map(|h| h.names().map(str::to_owned).collect())
+                .filter(|all: &Vec<_>| !all.is_empty()),
             comment: item.comment.clone(),
             address: match item.role {
                 Role::Plant => None,

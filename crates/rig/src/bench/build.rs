@@ -199,6 +199,7 @@ fn push(v: &Variable, role: Role, items: &mut Vec<Item>) {
     for k in 0..v.elements.min(ELEMENTS) {
         let name = if v.elements == 1 { v.name.to_string() } else { format!("{}[{k}]", v.name) };
         let (addr, retain, comment) = (v.addr.0 + k * words, retain.clone(), comment.clone());
-        items.push(Item { name, kind, role, addr, words, retain, comment, ty: v.ty, at: v.at });
+        let held = v.held.clone();
+        items.push(Item { name, kind, held, role, addr, words, retain, comment, ty: v.ty, at: v.at });
     }
 }

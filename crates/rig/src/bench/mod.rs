@@ -6,7 +6,9 @@ mod tables;
 
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::Arc;
 
+use g7_compile::Held;
 use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
 use g7_engine::{Addr, FaultKind, GroupId, State, StepId};
@@ -38,6 +40,8 @@ pub struct Item {
     pub name: String,
     /// How its words are to be read.
     pub kind: Kind,
+    /// What it holds, where that is less than all values of its type.
+    pub held: Option<Arc<Held>>,
     /// Its use.
     pub role: Role,
     /// The address of its first word, among the variables of the charts or of the plant.

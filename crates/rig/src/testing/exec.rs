@@ -341,8 +341,14 @@ impl<'b> Exec<'b, '_, '_> {
         if item.kind == Kind::Text {
             return Ok(Value::Text(read_text(words, word as u32).into()));
         }
-        convert(word, answer.ty, item)
-            .ok_or_else(|| self.failed(say!("`{}` ({}) cannot hold this value", item.name, item.ty), None))
+        let held =
+            |value: &Value| item.held.as_ref().is_none_or(|h| h.admits(value.number(item.kind) as i128));
+        convert(word, answer.ty, item).filter(held).ok_or_else(|| {
+            self.failed(
+                say!("`{}` ({}) cannot hold this value", item.name, Said::foreign(item.declared())),
+                None,
+            )
+        })
     }
 
     /// The value of a name in a condition, as text.
@@ -362,7 +368,9 @@ impl<'b> Exec<'b, '_, '_> {
         for (name, ask) in check.iter().flat_map(|c| &c.mentions) {
             // A mention is a single name and cannot fail, so this call does not recurse.
             if let Some(text) = self.mention(*ask) {
-                got.push((name.clone(), text));
+                let held = self.bench.item(name).and_then(|item| item.held.as_ref());
+                let value = held.zip(text.parse().ok()).and_then(|(held, n)| held.name_of(n));
+                got.push((name.clone(), value.map_or(text.clone(), str::to_owned)));
             }
         }
         let names: Vec<&str> = got.iter().map(|(n, _)| n.as_str()).collect();

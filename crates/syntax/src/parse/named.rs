@@ -19,7 +19,12 @@ impl Parser<'_> {
         if let Some(second) = made.names.get(1) {
             let at = second.at.0;
             let what = say!("a type has one name");
-            self.problem_help(&codes::EXPECTED, at, what, say!("write a second `type` for `{}`", second.text));
+            self.problem_help(
+                &codes::EXPECTED,
+                at,
+                what,
+                say!("write a second `type` for `{}`", second.text),
+            );
         }
         let at = made.address.as_ref().map(|a| a.at.0).or(made.safe.as_ref().map(|s| s.at.0));
         if let Some(at) = at.or((made.inverted || made.retain).then_some(made.at.0)) {
@@ -67,7 +72,12 @@ impl Parser<'_> {
         if !ty.is_integer() {
             let at = self.since(open.start);
             let what = say!("only whole numbers have bounds in their type, not {}", ty);
-            self.problem_help(&codes::EXPECTED, at, what, say!("write `LIMIT(0.0, x, 1.0)` where a value is set"));
+            self.problem_help(
+                &codes::EXPECTED,
+                at,
+                what,
+                say!("write `LIMIT(0.0, x, 1.0)` where a value is set"),
+            );
             return None;
         }
         Some(Limits::Range(least, most))

@@ -4,8 +4,8 @@ use super::{Printer, is_plain};
 use crate::parse::SWITCHES;
 use g7_iec::constant;
 use g7_model::{
-    Array, Document, Expr, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Param, Profile, Section,
-    Span, StmtKind, Switch, VarDecl, VarKind,
+    Array, Document, Expr, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Param,
+    Profile, Section, Span, StmtKind, Switch, VarDecl, VarKind,
 };
 
 impl Printer<'_> {

@@ -162,7 +162,7 @@ fn signals(bench: &Bench) -> Vec<Value> {
             "comment": item.comment,
             "address": variable.and_then(|v| v.address.as_deref()),
             "inverted": variable.is_some_and(|v| v.inverted),
-            "safe": bench.safe(item).map(|word| g7_rig::values::shown(&g7_host::Value::Word(word), item.kind)),
+            "safe": bench.safe(item).map(|word| item.show(&g7_host::Value::Word(word))),
         })
     });
     let steps = bench.steps.iter().map(|step| {
