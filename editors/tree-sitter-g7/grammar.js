@@ -69,6 +69,7 @@ module.exports = grammar({
         $.chart,
         $.instance,
         $.structure,
+        $.type_declaration,
         $.function_block,
         $.named_action,
         $.section,
@@ -115,7 +116,10 @@ module.exports = grammar({
           optional($.array),
           alias(choice(...words.types, ...words.types.map((t) => t.toLowerCase()), $.identifier), $.type_name),
           optional(
-            choice(seq(alias($._call_open, "("), $.number, ")"), seq("[", $.number, "]")),
+            choice(
+              seq(alias($._call_open, "("), $._expression, optional(seq("..", $._expression)), ")"),
+              seq("[", $.number, "]"),
+            ),
           ),
         ),
       ),
@@ -132,6 +136,20 @@ module.exports = grammar({
         optional(seq(":=", field("value", $._expression))),
         optional($.comment),
       ),
+    // `type Mode : (Manual, Automatic := 5)`, `type Percent : INT(0..100)`
+    type_declaration: ($) =>
+      prec.right(
+        seq(
+          kw("type"),
+          field("name", $._name),
+          ":",
+          choice($.enumeration, field("type", $.type)),
+          optional(seq(":=", field("value", $._expression))),
+          optional($.comment),
+        ),
+      ),
+    enumeration: ($) => seq("(", commas($.enumeration_value), ")"),
+    enumeration_value: ($) => seq(field("name", $._name), optional(seq(":=", $._expression))),
     function_block: ($) =>
       seq(
         kw("function"),

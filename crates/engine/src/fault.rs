@@ -25,7 +25,7 @@ pub enum FaultKind {
     Overflow,
     /// Division or remainder by zero.
     DivisionByZero,
-    /// An index, a MUX selector or a text that is out of range.
+    /// An index, a MUX selector, a text or a value of a type with bounds that is out of range.
     Range,
     /// More than [`crate::WORK`] rounds of loops in a scan.
     Work,
@@ -73,7 +73,7 @@ impl core::fmt::Display for FaultKind {
             FaultKind::Bound => f.write_str("no stable situation within the bound on passes"),
             FaultKind::Overflow => f.write_str("overflow: the result does not fit its type"),
             FaultKind::DivisionByZero => f.write_str("division by zero"),
-            FaultKind::Range => f.write_str("an index or a text is out of range"),
+            FaultKind::Range => f.write_str("a value, an index or a text is out of range"),
             FaultKind::Work => f.write_str("a loop did not end within the work of one scan"),
             FaultKind::Forcing { .. } => f.write_str("two forcing orders on one chart disagree"),
             FaultKind::Table => f.write_str("the target's tables are too small for this situation"),

@@ -12,7 +12,7 @@ pub fn fault(kind: FaultKind) -> Said {
         FaultKind::Bound => say!("no stable situation within the bound on passes"),
         FaultKind::Overflow => say!("overflow: the result does not fit its type"),
         FaultKind::DivisionByZero => say!("division by zero"),
-        FaultKind::Range => say!("an index or a text is out of range"),
+        FaultKind::Range => say!("a value, an index or a text is out of range"),
         FaultKind::Work => say!("a loop did not end within the work of one scan"),
         FaultKind::Forcing { .. } => say!("two forcing orders on one chart disagree"),
         FaultKind::Table => say!("the target's tables are too small for this situation"),

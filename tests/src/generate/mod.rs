@@ -4,6 +4,7 @@
 
 mod body;
 mod composed;
+mod named;
 mod instances;
 mod rng;
 mod script;

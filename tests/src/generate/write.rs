@@ -6,6 +6,7 @@ use g7_model::{Lasting, ProfileName, Qualifier, Type};
 use super::Weights;
 use super::body::{self, Driven, Targets};
 use super::composed::composed;
+use super::named::named;
 use super::instances::instances;
 use super::rng::Rng;
 use super::sight::{Sight, duration};
@@ -73,6 +74,7 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
     }
     instances(rng, &outside, &mut out);
     composed(rng, &outside, &mut out);
+    named(rng, &outside, &mut out);
     out
 }
 

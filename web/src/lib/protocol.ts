@@ -707,6 +707,8 @@ export type SignalRow = {
   role: SignalRole;
   type: SignalType;
   declared: string;
+  /** Of an enumeration: the names of its values. */
+  choices?: Array<string>;
   comment?: string;
   address?: string;
   driven: boolean;

@@ -109,7 +109,7 @@ impl<'d> Held<'d> {
         place: Place<'_>,
     ) {
         self.expect(e, wanted, place);
-        let Some((low, high)) = range else { return };
+        let Some((low, high)) = range.filter(|_| e.kind != ExprKind::Bad) else { return };
         match self.number(e, place) {
             Some(n) => self.within(n, (low, high), e.at.0),
             None => {
@@ -117,6 +117,7 @@ impl<'d> Held<'d> {
                     "the value of a variable with bounds is known here: a whole number, or a constant with a written number"
                 );
                 self.problems.push(Problem::new(&codes::NOT_CONSTANT, e.at.0, what));
+                e.kind = ExprKind::Bad;
             }
         }
     }
@@ -147,10 +148,15 @@ impl<'d> Held<'d> {
     /// An expression whose value is one of an enumeration, or none of any.
     pub(super) fn expect(&mut self, e: &mut Expr, wanted: Option<&str>, place: Place<'_>) {
         let found = self.typed(e, place);
-        self.agree(found, wanted, e.at.0);
+        self.agree(found, wanted, e);
     }
 
-    fn agree(&mut self, found: Option<&str>, wanted: Option<&str>, at: Span) {
+    /// Reports an expression of another enumeration. It counts as one that could not be read afterwards, so that
+    /// nothing else is told of it.
+    fn agree(&mut self, found: Option<&str>, wanted: Option<&str>, e: &mut Expr) {
+        if e.kind == ExprKind::Bad {
+            return;
+        }
         let (what, help) = match (found, wanted) {
             (Some(found), Some(wanted)) if found != wanted => {
                 (say!("this is a value of `{found}`, and one of `{wanted}` is needed"), self.values(wanted))
@@ -164,7 +170,8 @@ impl<'d> Held<'d> {
             ),
             _ => return,
         };
-        self.problems.push(Problem::new(&codes::WRONG_TYPE, at, what).help(help));
+        e.kind = ExprKind::Bad;
+        self.problems.push(Problem::new(&codes::WRONG_TYPE, e.at.0, what).help(help));
     }
 
     fn values(&self, ty: &str) -> Said {
@@ -177,11 +184,20 @@ impl<'d> Held<'d> {
         match &mut e.kind {
             ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => None,
             ExprKind::Path(path) => {
-                let (found, number) = self.path(path, place, at.0);
-                if let Some(number) = number {
-                    e.kind = ExprKind::Literal(Literal::Int(number, None));
+                let found = self.scopes.find(path, place);
+                if let Some(problem) = self.no_value(&found, path, at.0) {
+                    self.problems.push(problem);
+                    e.kind = ExprKind::Bad;
+                    return None;
                 }
-                found
+                match found {
+                    Found::Var(Var { holds: Holds::Values(ty), .. }, false) => Some(ty),
+                    Found::Value(ty, number) => {
+                        e.kind = ExprKind::Literal(Literal::Int(number, None));
+                        Some(ty)
+                    }
+                    _ => None,
+                }
             }
             ExprKind::Element(path, index, bit) => {
                 index.iter_mut().for_each(|e| self.plain(e, place));
@@ -223,31 +239,27 @@ impl<'d> Held<'d> {
         }
     }
 
-    /// The enumeration of a name, and the number if it is a value.
-    fn path(&mut self, path: &Path, place: Place<'_>, at: Span) -> (Option<&'d str>, Option<i128>) {
-        match self.scopes.find(path, place) {
-            Found::Var(Var { holds: Holds::Values(ty), .. }, false) => (Some(ty), None),
-            Found::Value(ty, number) => (Some(ty), Some(number)),
+    /// The problem of a name that is no value of one enumeration, though it is meant as such.
+    fn no_value(&self, found: &Found<'_>, path: &Path, at: Span) -> Option<Problem> {
+        match found {
             Found::Both(one, other) => {
                 let value = path.text();
                 let what = say!("`{value}` is a value of `{one}` and of `{other}`");
                 let problem = Problem::new(&codes::WRONG_TYPE, at, what);
-                self.problems.push(problem.help(say!("write `{one}.{value}` or `{other}.{value}`")));
-                (Some(one), Some(0))
+                Some(problem.help(say!("write `{one}.{value}` or `{other}.{value}`")))
             }
             Found::NoValue(ty) => {
                 let value = path.names.get(1).map_or("", |n| &*n.text);
-                let what = say!("`{}` has no value `{value}`", ty);
                 let at = path.names.get(1).map_or(at, |n| n.at.0);
+                let what = say!("`{}` has no value `{value}`", ty);
                 let problem = Problem::new(&codes::UNKNOWN_MEMBER, at, what);
                 let names = self.scopes.names_of(ty);
-                self.problems.push(match crate::similar(value, &names) {
+                Some(match crate::similar(value, &names) {
                     Some(near) => problem.meant(near),
                     None => problem.help(self.values(ty)),
-                });
-                (Some(ty), Some(0))
+                })
             }
-            Found::Var(..) | Found::Other => (None, None),
+            Found::Var(..) | Found::Value(..) | Found::Other => None,
         }
     }
 
@@ -265,10 +277,10 @@ impl<'d> Held<'d> {
             match wanted {
                 // The first one is a number beside a value.
                 None if next.is_some() => {
-                    self.agree(None, next, first.at.0);
+                    self.agree(None, next, first);
                     wanted = next;
                 }
-                _ => self.agree(next, wanted, e.at.0),
+                _ => self.agree(next, wanted, e),
             }
         }
         wanted
@@ -344,6 +356,9 @@ impl<'d> Held<'d> {
         if let Some(n) = self.number(value, place) {
             return self.within(n, (low, high), value.at.0);
         }
+        if self.is_limited(value, (low, high), place) {
+            return;
+        }
         let source = match &value.kind {
             ExprKind::Path(path) | ExprKind::Call(path, _) if whole => self.scopes.find(path, place),
             ExprKind::Path(path) => self.scopes.find(path, place),
@@ -364,6 +379,17 @@ impl<'d> Held<'d> {
         let at = value.at;
         let plain = std::mem::replace(value, Expr { kind: ExprKind::Bad, at });
         *value = self.checks.held(plain, (low, high, ty), at);
+    }
+
+    /// True for `LIMIT(0, x, 100)` with bounds that are known and fit.
+    fn is_limited(&self, value: &Expr, (low, high): (i128, i128), place: Place<'_>) -> bool {
+        let ExprKind::Call(path, args) = &value.kind else { return false };
+        let ([name], [least, _, most]) = (path.names.as_slice(), args.as_slice()) else { return false };
+        if StandardFunction::named(&name.text) != Some(StandardFunction::Limit) || args.iter().any(|a| a.name.is_some()) {
+            return false;
+        }
+        let bounds = self.number(&least.value, place).zip(self.number(&most.value, place));
+        bounds.is_some_and(|(least, most)| low <= least && least <= most && most <= high)
     }
 
     /// The variable that a target is, and whether it is only a bit or member of it.

@@ -122,7 +122,8 @@ impl<'d> Scopes<'d> {
                     let number = values.iter().find(|(name, _)| *name.text == *value).map(|(_, n)| *n);
                     return match number {
                         Some(number) if names.len() == 2 => Found::Value(ty, number),
-                        _ => Found::NoValue(ty),
+                        Some(_) => Found::Other,
+                        None => Found::NoValue(ty),
                     };
                 }
                 match self.charts.get(ty).and_then(|vars| vars.get(value)) {

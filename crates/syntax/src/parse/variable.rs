@@ -41,7 +41,9 @@ impl Parser<'_> {
         };
         let limits = values.or_else(|| if of.is_none() { self.subrange(ty) } else { None });
         let at = self.since(start).into();
-        let init = if array.is_some() { self.values() } else { self.initial_value() };
+        // The type of this name can be one of arrays.
+        let list = of.is_some() && self.peek().kind == Tok::LBracket;
+        let init = if array.is_some() || list { self.values() } else { self.initial_value() };
         let mut decl = VarDecl {
             kind,
             names,
