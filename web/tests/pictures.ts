@@ -42,8 +42,8 @@ prove X2 leads to X1
 `;
 
 /** An act before the picture: an input is switched, a button is pushed, a value is written, or time
- * passes. */
-type Act = number | { turn: string } | { push: string } | { write: [string, string] };
+ * passes, or a value is chosen. */
+type Act = number | { turn: string } | { push: string } | { write: [string, string] } | { choose: [string, string] };
 interface Scene {
   acts: Act[];
   /** The chart to show, if it is not the first. */
@@ -79,6 +79,7 @@ const SCENES: Record<string, Scene> = {
   'structure/instances.g7': { acts: [turn('start'), turn('home[1]'), turn('home[2]'), turn('home[4]'), turn('home[5]'), 800, turn('reached[1]'), turn('reached[4]'), 800] },
   'structure/linked-charts.g7': { acts: [turn('gate'), turn('start'), 2500], chart: 'Wash' },
   'structure/macro-step.g7': { acts: [push('start'), 2600], chart: 'Drill' },
+  'structure/modes.g7': { acts: [{ choose: ['selector', 'Automatic'] }, 2500] },
   'structure/task.g7': { acts: [push('start'), 2400] },
   'transport-workcell/alternating.g7': { acts: [9000] },
   'transport-workcell/basic.g7': { acts: [8000] },
@@ -127,6 +128,10 @@ async function pass(page: Page, ms: number): Promise<void> {
 
 async function act(page: Page, what: Act): Promise<void> {
   if (typeof what === 'number') return pass(page, what);
+  if ('choose' in what) {
+    const [name, value] = what.choose;
+    return void (await page.getByRole('combobox', { name: `Value of ${name}`, exact: true }).selectOption(value));
+  }
   if ('write' in what) {
     const field = page.getByRole('textbox', { name: `Value of ${what.write[0]}`, exact: true });
     await field.fill(what.write[1]);

@@ -103,6 +103,7 @@ before(async () => {
     'fault.g7': FAULT,
     'axes.g7': AXES,
     'drives.g7': DRIVES,
+    'modes.g7': example('structure/modes.g7'),
     'tanks.g7': example('two-tanks/chart.g7'),
     'two-tanks.svg': example('two-tanks/two-tanks.svg'),
     'bead-sorter/exercise-1.g7': example('bead-sorter/exercise-1.g7'),
@@ -135,6 +136,34 @@ async function end(p: Page & { errors: string[] }): Promise<void> {
   assert.deepEqual(p.errors, []);
   await p.context().close();
 }
+
+test('a value of an enumeration is chosen, and one with bounds is held to them', async () => {
+  const p = await open(b, site, 'modes.g7');
+  await oneScan(p);
+  const selector = p.getByRole('combobox', { name: 'Value of selector', exact: true });
+  await selector.waitFor();
+  assert.deepEqual(await selector.locator('option').allInnerTexts(), ['Off', 'Manual', 'Automatic']);
+  assert.equal(await selector.inputValue(), 'Off');
+  const phase = p.locator('li', { has: p.locator('.name', { hasText: /^phase$/ }) }).locator('output.value');
+  assert.equal(await phase.innerText(), 'Empty');
+  await selector.selectOption('Automatic');
+  await oneScan(p);
+  await until(async () => (await active(p)) === 'Fill', 'the tank is filled');
+  await oneScan(p);
+  await until(async () => (await phase.innerText()) === 'Filling', 'the phase has its name');
+  await p.getByRole('button', { name: 'Manual', exact: true }).click();
+  await until(async () => (await selector.inputValue()) === 'Manual', 'the mode switch of the operator');
+  await p.getByRole('button', { name: 'Force phase', exact: true }).click();
+  await p.getByRole('combobox', { name: 'Value of phase', exact: true }).selectOption('Full');
+  await oneScan(p);
+  await until(async () => (await p.getByRole('combobox', { name: 'Value of phase', exact: true }).inputValue()) === 'Full', 'it is forced by its name');
+  await p.getByRole('button', { name: 'Force valve', exact: true }).click();
+  const valve = p.getByRole('textbox', { name: 'Value of valve', exact: true });
+  await valve.fill('101');
+  await valve.press('Enter');
+  await p.getByText('is outside 0 .. 100').first().waitFor();
+  await end(p);
+});
 
 test('scan by scan: an input is turned, the step follows, its output is lit', async () => {
   const p = await open(b, site, 'lamp.g7');

@@ -48,7 +48,7 @@ impl Checks {
         Expr { kind: ExprKind::Call(path, vec![Arg { name: None, output: false, value }]), at: place }
     }
 
-    /// `function INT_within_0_100(x : INT) : INT { INT_within_0_100 := MUX(SEL(x < 0 OR x > 100, 0, 2), x, x) }`: a choice
+    /// `function INT_within_0_100(x : INT) : INT { INT_within_0_100 := MUX(SEL(x < 0 OR x > 100, 0, 2), x, 0) }`: a choice
     /// that is not there is the fault `range` (SEMANTICS, section 5), in all forms of a chart.
     fn function(&mut self, low: i128, high: i128, ty: Type, at: Place) -> Name {
         let signed = |n: i128| n.to_string().replace('-', "m");
@@ -68,7 +68,7 @@ impl Checks {
             (None, None) => make.expr(ExprKind::Literal(Literal::Bool(false))),
         };
         let choice = make.call("SEL", vec![outside, make.number(0), make.number(2)]);
-        let value = make.call("MUX", vec![choice, make.x(), make.x()]);
+        let value = make.call("MUX", vec![choice, make.x(), make.number(low)]);
         let target = make.expr(ExprKind::Path(Path { names: vec![name.clone()] }));
         let body = Block {
             locals: Vec::new(),
