@@ -1,10 +1,11 @@
 //! Completion: the words that are possible at a place of the text.
 
-use g7_compile::references::{Declared, Kind, Member, Types};
+use g7_compile::references::{Declared, Kind, Member, Types, values};
 use g7_model::instances::drawn_for;
 use g7_model::words::{self, Told, Word};
 use g7_model::{
-    Composed, Document, Item, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, VarKind, say,
+    Composed, Document, Item, Name, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, VarKind,
+    say,
 };
 use g7_syntax::{Token, TokenKind};
 
@@ -257,11 +258,11 @@ impl Place<'_> {
             choice(&c.name.text, "type", told, &g7_syntax::show_name(&c.name.text))
         };
         let items = self.document.items.iter();
-        let one = |item| match item {
-            &Item::Composed(ref c) => Some(shown(c)),
+        let one = |item: &Item| match item {
+            Item::Composed(c) => Some(shown(c)),
             Item::Type(t) => {
                 let name = t.names.first()?;
-                let told = t.comment.as_deref().map_or_else(|| type_declaration(t).into(), str::to_owned);
+                let told = t.comment.as_deref().map_or_else(|| type_declaration(t), str::to_owned);
                 Some(choice(&name.text, "type", Said::foreign(told), &g7_syntax::show_name(&name.text)))
             }
             _ => None,
@@ -297,6 +298,13 @@ impl Place<'_> {
     fn members_of(&self, owners: &[&str]) -> Option<Vec<Choice>> {
         let types = Types::of(self.document);
         let (first, behind) = owners.split_first()?;
+        if let Some(t) = types.other(first).filter(|_| behind.is_empty()) {
+            let told = Said::foreign(type_declaration(t));
+            let value = |(_, name): (_, &Name)| {
+                choice(&name.text, "value", told.clone(), &g7_syntax::show_name(&name.text))
+            };
+            return Some(values(t).map(value).collect());
+        }
         let block = self.enclosing(Around::Block).and_then(|name| types.named(name));
         let own = block.and_then(|of| Member::named(of, first)).map(|m| types.kind_of(&m));
         let (kind, rest) = own.map(|kind| (kind, behind)).or_else(|| {

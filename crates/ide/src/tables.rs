@@ -1,7 +1,7 @@
 //! The tables of variables and steps.
 
 use g7_compile::references::{Declared, Member};
-use g7_model::{ChartKind, Document, Item, Said, Span, Type, VarDecl, VarKind, say};
+use g7_model::{ChartKind, Document, Item, Limits, Said, Span, Type, VarDecl, VarKind, say};
 
 use crate::file::Readable;
 use crate::ids;
@@ -130,7 +130,13 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
 
 /// The type of a declaration, with the bounds of an array.
 fn type_of(v: &VarDecl) -> String {
-    let ty = v.of.as_ref().map_or_else(|| v.ty.to_string(), |of| of.text.to_string());
+    let ty = match (&v.of, v.limits.as_deref()) {
+        (Some(of), _) => of.text.to_string(),
+        (None, Some(Limits::Range(least, most))) => {
+            format!("{}({}..{})", v.ty, g7_syntax::print_expr(least), g7_syntax::print_expr(most))
+        }
+        (None, _) => v.ty.to_string(),
+    };
     let Some(array) = &v.array else { return ty };
     let bounds: Vec<String> = array
         .dimensions

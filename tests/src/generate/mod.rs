@@ -4,8 +4,8 @@
 
 mod body;
 mod composed;
-mod named;
 mod instances;
+mod named;
 mod rng;
 mod script;
 mod sight;

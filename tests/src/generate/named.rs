@@ -20,7 +20,8 @@ pub(super) fn named(rng: &Rng, outside: &Sight, out: &mut String) {
         1..=3 => format!("LIMIT(0, spin + SEL({go}, -1, {by}), {limit})"),
         _ => ring,
     };
-    let gear = rng.one(["SEL(high, Low, Gear.High)", "gears[1 + spin MOD 2]", "MUX(spin MOD 3, Low, Middle, High)"]);
+    let gear =
+        rng.one(["SEL(high, Low, Gear.High)", "gears[1 + spin MOD 2]", "MUX(spin MOD 3, Low, Middle, High)"]);
     out.push_str(&format!(
         "type Gear : (Low, Middle := {by}, High) := Middle\ntype Turn : INT(0..{limit}) := {by}\n\
          type Turns : ARRAY[1..2] OF Turn\nvar gear : Gear\nvar gears : ARRAY[1..2] OF Gear := [High]\nvar spin : Turn\n\

@@ -128,6 +128,11 @@ impl<'d> Types<'d> {
         }
     }
 
+    /// The type with this name that is no structure and no function block.
+    pub fn other(&self, name: &str) -> Option<&'d VarDecl> {
+        self.others.get(name).copied()
+    }
+
     /// True if the file declares a type of this name.
     pub fn has(&self, name: &str) -> bool {
         self.types.contains_key(name) || self.others.contains_key(name)

@@ -253,3 +253,46 @@ fn a_member_that_is_not_there_is_unknown() {
     let unknown: Vec<u32> = refs.unknown().iter().map(|u| u.at.start).collect();
     assert_eq!(unknown, [8, 20, 44, 66]);
 }
+
+const NAMED: &str = "\
+type Mode : (Off, Manual, Automatic) := Off
+type Colour : (Red, Off)
+type Percent : INT(0..most)
+type Row : ARRAY[1..2] OF Percent
+const most : INT := 100
+struct Lamp {
+  mode : Mode := Mode.Manual
+}
+input want : Mode
+var Red : BOOL
+var p : Row
+chart G {
+  var Manual : INT
+  var m : Mode := Automatic
+  initial step 0 { each scan: m := SEL(Red, Mode.Off, Automatic); }
+  0 -> 0 when want = Mode.Manual and Manual = 1 and m <> Mode.Blue
+}
+prove never G.m = Automatic and want = Colour.Off and Red and p[1] > 3
+";
+
+#[test]
+fn values_of_enumerations_are_found_behind_their_type_and_alone() {
+    let value = |of: &str, name: &str| Definition::Value { of: of.into(), name: name.into() };
+    let lines = |definition: &Definition| {
+        places_in(NAMED, definition).into_iter().map(|(line, _)| line).collect::<Vec<_>>()
+    };
+    assert_eq!(lines(&of_type("Mode")), [1, 7, 7, 9, 14, 15, 16, 16]);
+    assert_eq!(lines(&of_type("Percent")), [3, 4]);
+    assert_eq!(lines(&of_type("Row")), [4, 11]);
+    assert_eq!(lines(&value("Mode", "Automatic")), [1, 14, 15, 18]);
+    // The variable of the chart hides the bare value.
+    assert_eq!(lines(&value("Mode", "Manual")), [1, 7, 16]);
+    assert_eq!(lines(&variable(Some("G"), "Manual")), [13, 16]);
+    assert_eq!(lines(&value("Colour", "Red")), [2]);
+    assert_eq!(lines(&value("Colour", "Off")), [2, 18]);
+    assert_eq!(lines(&variable(None, "Red")), [10, 15, 18]);
+    assert_eq!(lines(&variable(None, "most")), [3, 5]);
+    let (text, refs) = read(NAMED);
+    let unknown: Vec<_> = refs.unknown().iter().map(|u| place(&text, u.at)).collect();
+    assert_eq!(unknown, listed(&[(15, "SEL"), (16, "Blue")]));
+}

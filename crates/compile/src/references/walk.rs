@@ -349,7 +349,19 @@ impl<'d> Walk<'_, 'd> {
             let def = Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
             self.add(name.at.0, def, Written::Declared);
         }
-        self.declaration(t);
+        // Its own first value needs no type before it, whatever else has this name.
+        let first = match t.init.as_ref().map(|e| &e.kind) {
+            Some(ExprKind::Path(path)) if path.names.len() == 1 => path.names.first(),
+            _ => None,
+        };
+        let own = first.and_then(|name| values(t).find(|(_, v)| v.text == name.text).zip(Some(name)));
+        match own {
+            Some(((of, _), name)) => {
+                let def = Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
+                self.add(name.at.0, def, Written::Path { first: true, only: true });
+            }
+            None => self.declaration(t),
+        }
     }
 
     /// A structure or function block.

@@ -385,7 +385,9 @@ impl<'d> Held<'d> {
     fn is_limited(&self, value: &Expr, (low, high): (i128, i128), place: Place<'_>) -> bool {
         let ExprKind::Call(path, args) = &value.kind else { return false };
         let ([name], [least, _, most]) = (path.names.as_slice(), args.as_slice()) else { return false };
-        if StandardFunction::named(&name.text) != Some(StandardFunction::Limit) || args.iter().any(|a| a.name.is_some()) {
+        if StandardFunction::named(&name.text) != Some(StandardFunction::Limit)
+            || args.iter().any(|a| a.name.is_some())
+        {
             return false;
         }
         let bounds = self.number(&least.value, place).zip(self.number(&most.value, place));

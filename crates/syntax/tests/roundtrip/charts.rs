@@ -7,8 +7,8 @@ use crate::expressions::{
 use crate::world;
 use g7_model::{
     Action, ActionKind, Array, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Composed, Document, Expr,
-    ExprKind, Function, Instance, InstanceNames, Item, Name, NamedAction, Note, Order, Param, Path, Place,
-    Profile, ProfileName, Qualifier, Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch,
+    ExprKind, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Note, Order, Param, Path,
+    Place, Profile, ProfileName, Qualifier, Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch,
     Target, TargetPlc, Transition, Type, VarDecl, VarKind, Work,
 };
 use proptest::prelude::*;
@@ -54,12 +54,12 @@ fn variable() -> impl Strategy<Value = VarDecl> {
     let structure = (Just(None), prop::option::of(fields()), fields());
     let shape = prop_oneof![3 => scalar.boxed(), 1 => array.boxed(), 1 => structure.boxed()];
     (kind, names(1..4), declared_type(), shape, rest).prop_map(
-        |(kind, names, (ty, of), (array, init, value), (address, flag, safe, comment))| VarDecl {
+        |(kind, names, (ty, of, limits), (array, init, value), (address, flag, safe, comment))| VarDecl {
             kind,
             names,
             array,
             of,
-            limits: None,
+            limits: limits.map(Box::new),
             usual: None,
             ty,
             init: if kind == VarKind::Const { Some(value) } else { init },
@@ -73,12 +73,18 @@ fn variable() -> impl Strategy<Value = VarDecl> {
     )
 }
 
-/// A type of the language, or the name of one that the file declares.
-fn declared_type() -> impl Strategy<Value = (Type, Option<Box<Name>>)> {
+/// A type of the language, the name of one that the file declares, or one with bounds.
+fn declared_type() -> impl Strategy<Value = (Type, Option<Box<Name>>, Option<Limits>)> {
     let own = name().prop_filter("a type of the language", |n| {
         g7_iec::constant::type_named(&n.text).is_none() && !n.text.starts_with(|c: char| c.is_ascii_digit())
     });
-    prop_oneof![4 => ty().prop_map(|ty| (ty, None)), 1 => own.prop_map(|of| (Type::Bool, Some(Box::new(of))))]
+    let whole: Vec<Type> = Type::ELEMENTARY.into_iter().filter(|ty| ty.is_integer()).collect();
+    let bounded = (prop::sample::select(whole), expr(), expr());
+    prop_oneof![
+        4 => ty().prop_map(|ty| (ty, None, None)),
+        1 => own.prop_map(|of| (Type::Bool, Some(Box::new(of)), None)),
+        1 => bounded.prop_map(|(ty, least, most)| (ty, None, Some(Limits::Range(least, most)))),
+    ]
 }
 
 fn composed() -> impl Strategy<Value = Composed> {
@@ -266,6 +272,30 @@ pub(crate) fn param() -> impl Strategy<Value = Param> {
     (name(), ty()).prop_map(|(name, ty)| Param { name, ty })
 }
 
+/// An enumeration, or what a variable can be of.
+fn type_declaration() -> impl Strategy<Value = VarDecl> {
+    let values = prop::collection::vec((name(), prop::option::of(expr())), 1..4);
+    let head = || (name(), comment());
+    let enumeration =
+        (head(), values, prop::option::of(expr())).prop_map(|((name, comment), values, init)| VarDecl {
+            limits: Some(Box::new(Limits::Values(values))),
+            init,
+            comment,
+            ..VarDecl::new(VarKind::Var, vec![name], Type::Int, at())
+        });
+    let other = (head(), variable()).prop_map(|((name, comment), v)| VarDecl {
+        kind: VarKind::Var,
+        names: vec![name],
+        address: None,
+        inverted: false,
+        retain: false,
+        safe: None,
+        comment,
+        ..v
+    });
+    prop_oneof![enumeration, other]
+}
+
 fn instance() -> impl Strategy<Value = Instance> {
     let range = (expr(), expr()).prop_map(|(a, b)| InstanceNames::Range(Box::new(a), Box::new(b)));
     let names = prop_oneof![name().prop_map(InstanceNames::One), range];
@@ -295,6 +325,7 @@ fn item() -> impl Strategy<Value = Item> {
         4 => chart().prop_map(Item::Chart),
         2 => instance().prop_map(Item::Instance),
         2 => composed().prop_map(Item::Composed),
+        2 => type_declaration().prop_map(Item::Type),
         1 => named_action().prop_map(Item::Action),
         1 => section().prop_map(Item::Section),
         1 => function,
