@@ -1,4 +1,4 @@
-//! What a variable holds, where that is less than all values of its type: known to all that show and set values.
+//! The values of a variable, where they are less than all of its type: known to all that show and set values.
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -45,7 +45,7 @@ impl Held {
     }
 }
 
-/// What the variables of a declaration hold, among the enumerations of a document.
+/// The values of the variables of a declaration, among the enumerations of a document.
 pub(crate) fn held(v: &VarDecl, enumerations: &HashMap<&str, Arc<Held>>) -> Option<Arc<Held>> {
     match v.limits.as_deref()? {
         Limits::Range(least, most) => Some(Arc::new(Held::Range(least.kind.whole()?, most.kind.whole()?))),

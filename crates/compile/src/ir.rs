@@ -101,7 +101,7 @@ pub struct Var {
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
-    /// What it holds, where that is less than all values of its type.
+    /// Its values, where they are less than all of its type.
     pub held: Option<Arc<Held>>,
     /// Number of elements: 1, except for the tables of a plant.
     pub elements: u32,

@@ -69,7 +69,7 @@ pub struct Variable {
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
-    /// What it holds, where that is less than all values of its type.
+    /// Its values, where they are less than all of its type.
     pub held: Option<Arc<Held>>,
     /// Its first word.
     pub addr: Addr,

@@ -229,7 +229,7 @@ pub struct VarDecl {
     pub ty: Type,
     /// The name of a type that the file declares, see [`Composed`] and [`Item::Type`].
     pub of: Option<Box<Name>>,
-    /// What they can hold, where that is less than all values of `ty`.
+    /// The values that they can hold, where these are less than all of `ty`.
     pub limits: Option<Box<Limits>>,
     /// The value of what `init` leaves out, given by a declared type; the type's zero when absent. No text gives one.
     pub usual: Option<Box<Expr>>,

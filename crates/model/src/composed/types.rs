@@ -15,10 +15,8 @@ impl<'d> Composition<'d> {
             || document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None });
         for c in composed().filter(|c| !c.name.text.is_empty()) {
             let name = &c.name.text;
-            if Type::named(&name.to_ascii_uppercase()).is_some() {
-                let what = say!("`{name}` is a type of the language");
-                let problem = Problem::new(&codes::DEFINED_TWICE, c.name.at.0, what);
-                self.problems.push(problem.help(say!("choose another name")));
+            if let Some(problem) = of_language(&c.name) {
+                self.problems.push(problem);
                 continue;
             }
             if let Some(first) = self.types.get(&**name).map(|t| t.name.at.0) {
@@ -137,4 +135,11 @@ pub(crate) fn unknown_type(of: &Name, names: &[&str]) -> Problem {
             "types are those of IEC 61131-3, and those that `struct`, `function block` and `type` declare"
         )),
     }
+}
+
+/// The problem of a type that has the name of one of the language.
+pub(crate) fn of_language(name: &Name) -> Option<Problem> {
+    Type::named(&name.text.to_ascii_uppercase())?;
+    let what = say!("`{}` is a type of the language", name.text);
+    Some(Problem::new(&codes::DEFINED_TWICE, name.at.0, what).help(say!("choose another name")))
 }

@@ -73,10 +73,8 @@ impl<'d> Types<'d> {
 
     /// Reports the name of a type that means something else already.
     fn is_free(&mut self, name: &Name, first: Option<&Name>, taken: &HashMap<&str, Span>) -> bool {
-        if Type::named(&name.text.to_ascii_uppercase()).is_some() {
-            let what = say!("`{}` is a type of the language", name.text);
-            let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
-            self.problems.push(problem.help(say!("choose another name")));
+        if let Some(problem) = crate::composed::of_language(name) {
+            self.problems.push(problem);
             return false;
         }
         let first = first.map(|n| n.at.0).or_else(|| taken.get(&*name.text).copied());
@@ -320,7 +318,7 @@ pub fn numbered(values: &[(Name, Option<Expr>)]) -> Vec<(&Name, Option<i128>)> {
     all
 }
 
-/// What the items of a file other than types declare, and the charts.
+/// The names that a file declares, except for types.
 fn names(document: &Document) -> HashMap<&str, Span> {
     let mut all = HashMap::new();
     for item in &document.items {

@@ -1,11 +1,11 @@
-//! What the names of a document hold: enumerations, and variables of them or with bounds.
+//! The names of a document and what they hold: enumerations, and variables of them or with bounds.
 
 use std::collections::HashMap;
 
 use super::declare::numbered;
 use crate::{ChartItem, Document, Item, Limits, Name, Path, Type, VarDecl, VarKind};
 
-/// What a variable can hold.
+/// The values that a variable can hold.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum Holds<'d> {
     /// All values of its type.
@@ -149,7 +149,7 @@ fn declare<'d>(vars: &mut Vars<'d>, v: &'d VarDecl) {
     }
 }
 
-/// What the variables of a declaration can hold.
+/// The values that the variables of a declaration can hold.
 pub(super) fn holds(v: &VarDecl) -> Holds<'_> {
     match v.limits.as_deref() {
         Some(Limits::Of(name)) => Holds::Values(&name.text),

@@ -40,7 +40,7 @@ pub struct Item {
     pub name: String,
     /// How its words are to be read.
     pub kind: Kind,
-    /// What it holds, where that is less than all values of its type.
+    /// Its values, where they are less than all of its type.
     pub held: Option<Arc<Held>>,
     /// Its use.
     pub role: Role,
