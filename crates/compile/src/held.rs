@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use g7_model::{Limits, VarDecl};
+use g7_model::{Limits, Type, VarDecl};
 
 /// The values of a variable of an integer type with bounds, or of an enumeration.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -33,6 +33,25 @@ impl Held {
     pub fn number_of(&self, name: &str) -> Option<i128> {
         let Held::Names(_, all) = self else { return None };
         all.iter().find(|(known, _)| **known == *name).map(|(_, n)| *n)
+    }
+
+    /// The type as the text declares it: `INT(0..100)`, `Mode`.
+    pub fn declared(&self, ty: Type) -> String {
+        match self {
+            Held::Range(least, most) => format!("{ty}({least}..{most})"),
+            Held::Names(name, _) => name.to_string(),
+        }
+    }
+
+    /// The type with all that its values mean, to be compared with that of another text: `Mode(Off=0,Manual=1)`.
+    pub fn meaning(&self, ty: Type) -> String {
+        match self {
+            Held::Range(..) => self.declared(ty),
+            Held::Names(name, all) => {
+                let values: Vec<String> = all.iter().map(|(value, n)| format!("{value}={n}")).collect();
+                format!("{name}({})", values.join(","))
+            }
+        }
     }
 
     /// The names of all values, in the order of the text.

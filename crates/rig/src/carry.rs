@@ -10,13 +10,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::{Symbols, Variable};
+use g7_compile::{Compiled, Held};
 use g7_engine::{Addr, Common, GroupId, NONE, State, StepId};
 use g7_host::Runner;
 use g7_model::instances::instantiated;
-use g7_model::{Chart, ChartKind, Document, Said, say};
+use g7_model::{Chart, ChartKind, Document, Said, Type, say};
 
 use crate::{Bench, Role, fault};
 
@@ -160,7 +160,8 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<Said>) -> V
     let mut words = Vec::new();
     let mut kept = BTreeSet::new();
     for v in c.symbols.variables.iter().filter(|v| lasting(v)) {
-        let Some(o) = old.get(&*v.name).filter(|o| lasting(o) && o.ty == v.ty) else { continue };
+        let fits = |o: &&&Variable| lasting(o) && o.ty == v.ty && is_held(v, o, state);
+        let Some(o) = old.get(&*v.name).filter(fits) else { continue };
         kept.insert(&*v.name);
         // If an action was removed, its variable returns to its initial value.
         if drove.contains(&o.addr) && !drives.contains(&v.addr) {
@@ -178,12 +179,36 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<Said>) -> V
         let value = Said::foreign(Symbols::value_text(o.ty, o.value(state)));
         let now = c.symbols.variable(&o.name);
         lost.push(match now {
-            Some(v) => say!("`{}` was {} and is {}: its value {value} is lost", o.name, o.ty, v.ty),
+            Some(v) => {
+                let (mut before, mut now) = (declared(o, Held::declared), declared(v, Held::declared));
+                if before == now {
+                    (before, now) = (declared(o, Held::meaning), declared(v, Held::meaning));
+                }
+                let (before, now) = (Said::foreign(before), Said::foreign(now));
+                say!("`{}` was {before} and is {now}: its value {value} is lost", o.name)
+            }
             None if value.is_empty() => say!("`{}` no longer exists", o.name),
             None => say!("`{}`, which is {value}, no longer exists", o.name),
         });
     }
     words
+}
+
+/// True if a variable can hold the value that it had, with the same meaning.
+fn is_held(now: &Variable, before: &Variable, state: &State) -> bool {
+    let Some(held) = now.held.as_ref().filter(|held| before.held.as_ref() != Some(held)) else {
+        // A number that had a name has none any more.
+        return now.held.is_some() == before.held.is_some()
+            || matches!(before.held.as_deref(), Some(Held::Range(..)));
+    };
+    let number = before.value(state).first().map_or(0, |word| i128::from(*word as i64));
+    let name = before.held.as_ref().and_then(|held| held.name_of(number));
+    held.admits(number) && held.name_of(number) == name
+}
+
+/// The type of a variable, told in one of two ways if it holds less than its type does.
+fn declared(v: &Variable, told: fn(&Held, Type) -> String) -> String {
+    v.held.as_ref().map_or_else(|| v.ty.to_string(), |held| told(held, v.ty))
 }
 
 /// The variables that are driven by steps and control blocks.

@@ -148,11 +148,7 @@ impl Item {
 
     /// Its type as the text declares it: `INT`, `INT(0..100)`, `Mode`.
     pub fn declared(&self) -> String {
-        match self.held.as_deref() {
-            Some(Held::Range(least, most)) => format!("{}({least}..{most})", self.ty),
-            Some(Held::Names(name, _)) => name.to_string(),
-            None => self.ty.to_string(),
-        }
+        self.held.as_ref().map_or_else(|| self.ty.to_string(), |held| held.declared(self.ty))
     }
 }
 

@@ -349,3 +349,52 @@ fn a_copy_of_a_run_goes_on_like_it() {
     }
     assert!(reports > 1_000, "only {reports}");
 }
+
+const MODES: &str = "type Mode : (Off, Manual, Automatic)\ninput n : INT\nvar mode : Mode\nvar p : INT(0..100)\nvar i : INT\noutput q : BOOL\nchart G {\n initial step 1 { each scan: { p := n\n i := n\n mode := Automatic } }\n step 2 { N q }\n 1 -> 2 when p = 7 and mode = Off and i > 0\n 2 -> 1 when q\n}\n";
+
+#[test]
+fn a_value_goes_on_where_it_has_the_same_meaning_and_its_type_holds_it() {
+    let kept = |after: &str, n: u64| {
+        let after = after.replace("each scan: { p := n\n i := n\n mode := Automatic }", "N q");
+        let (bench, Carried { runner, lost }) = changed(MODES, &after, &[("n", n)], 2);
+        let values = ["mode", "p", "i"].map(|name| word(&bench, &runner, name));
+        (values, texts(&lost).join("; "))
+    };
+    assert_eq!(kept(MODES, 60), ([2, 60, 60], String::new()));
+    // Another value behind the one that it has, wider bounds, or none.
+    let wider = MODES.replace("Automatic)", "Automatic, Setup)").replace("INT(0..100)", "INT(-9..500)");
+    assert_eq!(kept(&wider, 60), ([2, 60, 60], String::new()));
+    assert_eq!(kept(&MODES.replace("INT(0..100)", "INT"), 60), ([2, 60, 60], String::new()));
+    assert_eq!(kept(&MODES.replace("var i : INT", "var i : INT(0..60)"), 60), ([2, 60, 60], String::new()));
+    let closer = MODES.replace("INT(0..100)", "INT(0..59)");
+    let lost = "`p` was INT(0..100) and is INT(0..59): its value 60 is lost";
+    assert_eq!(kept(&closer, 60), ([2, 0, 60], lost.to_owned()));
+    let other = MODES.replace("(Off, Manual, Automatic)", "(Off, Automatic, Manual)");
+    let lost = "`mode` was Mode(Off=0,Manual=1,Automatic=2) and is Mode(Off=0,Automatic=1,Manual=2): its value 2 is lost";
+    assert_eq!(kept(&other, 60), ([0, 60, 60], lost.to_owned()));
+}
+
+#[test]
+fn values_are_read_and_shown_by_their_names_and_held_to_their_bounds() {
+    let text = source(
+        &MODES.replace("input n : INT", "input n : INT\nvar kept : Mode retain\nvar k : INT(0..9) retain"),
+    );
+    let bench = bench(&text);
+    let mode = item(&bench, "mode");
+    for (text, wanted) in [("Automatic", 2), (" Mode.Manual ", 1), ("0", 0)] {
+        assert_eq!(mode.read(text), Ok(Value::Word(wanted)), "{text}");
+    }
+    let names = mode.read("Setup").expect_err("no such value");
+    assert_eq!(names.as_str(), "`mode` is one of Off, Manual, Automatic");
+    mode.read("3").expect_err("no value has this number");
+    assert_eq!((mode.show(&Value::Word(2)), mode.show(&Value::Word(3))), ("Automatic".into(), "3".into()));
+    let p = item(&bench, "p");
+    assert_eq!(p.read("100"), Ok(Value::Word(100)));
+    assert_eq!(p.read("101").expect_err("too large").as_str(), "`101` is outside 0 .. 100");
+    p.read("-1").expect_err("too small");
+    p.read("x").expect_err("no number");
+    assert_eq!((p.declared(), mode.declared()), ("INT(0..100)".to_owned(), "Mode".to_owned()));
+    let retained = |name| item(&bench, name).retain.clone().unwrap_or_default();
+    assert_eq!(retained("kept"), "Mode(Off=0,Manual=1,Automatic=2)");
+    assert_eq!(retained("k"), "INT(0..9)");
+}

@@ -194,7 +194,8 @@ fn states(symbols: &Symbols, items: &mut Vec<Item>) {
 fn push(v: &Variable, role: Role, items: &mut Vec<Item>) {
     let Some(kind) = kind(v.ty) else { return };
     let words = v.words().checked_div(v.elements.max(1)).unwrap_or(1).max(1);
-    let retain = v.retain.then(|| v.ty.to_string());
+    let meaning = || v.held.as_ref().map_or_else(|| v.ty.to_string(), |held| held.meaning(v.ty));
+    let retain = v.retain.then(meaning);
     let comment = v.comment.as_deref().map(str::to_owned);
     for k in 0..v.elements.min(ELEMENTS) {
         let name = if v.elements == 1 { v.name.to_string() } else { format!("{}[{k}]", v.name) };
