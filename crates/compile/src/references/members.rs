@@ -188,12 +188,12 @@ impl<'d> Types<'d> {
         }
     }
 
-    /// The type of a name; one that stands for others is followed, at most as far as there are types.
+    /// The type of a name; one that stands for others is followed, as far as types can stand in each other.
     fn kind_named(&self, name: &str, passed: usize) -> Kind<'d> {
         if let Some(composed) = self.named(name) {
             return Kind::Composed(composed);
         }
-        let Some(t) = self.others.get(name).filter(|_| passed < self.others.len()) else {
+        let Some(t) = self.others.get(name).filter(|_| passed < 64) else {
             return Kind::Unknown;
         };
         match &t.of {

@@ -8,6 +8,8 @@ use crate::{
     Type, VarDecl, VarKind, codes, say,
 };
 
+/// How many types can stand for each other in a row.
+const DEEP: usize = 64;
 /// Most values of an enumeration.
 const MOST: usize = 1 << 12;
 
@@ -112,9 +114,12 @@ impl<'d> Types<'d> {
         }
         way.push(t);
         if let Some(next) = t.of.as_ref().and_then(|of| written.get(&*of.text)) {
-            // A way is as long as the types of the file are many; each is followed once.
-            if way.len() < MOST {
+            if way.len() < DEEP {
                 self.follow(next, written, way);
+            } else {
+                let what = say!("types stand in each other at most {DEEP} deep");
+                self.problems.push(Problem::new(&codes::TOO_DEEP, name.at.0, what));
+                self.known.insert(&name.text, VarDecl { of: None, ..t.clone() });
             }
         }
         way.pop();
@@ -151,7 +156,7 @@ impl<'d> Types<'d> {
         let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
         if let Some((name, _)) = values.get(MOST) {
             let what = say!("an enumeration has at most {MOST} values");
-            self.problems.push(Problem::new(&codes::TOO_LARGE, name.at.0, what));
+            return self.problems.push(Problem::new(&codes::TOO_LARGE, name.at.0, what));
         }
         for (name, number) in numbered(values) {
             let twice = |what, first: Span| {

@@ -9,6 +9,9 @@ use crate::{
     Span, StandardFunction, Type, VarDecl, codes, say,
 };
 
+/// Most values that a message lists.
+const SHOWN: usize = 20;
+
 /// The document with numbers in the place of values of enumerations, and with checks of what variables with bounds
 /// receive; with the problems found.
 pub fn held(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
@@ -175,7 +178,12 @@ impl<'d> Held<'d> {
     }
 
     fn values(&self, ty: &str) -> Said {
-        say!("its values are {}", Said::foreign(self.scopes.names_of(ty).join(", ")))
+        let mut names = self.scopes.names_of(ty);
+        if names.len() > SHOWN {
+            names.truncate(SHOWN);
+            names.push("…");
+        }
+        say!("its values are {}", Said::foreign(names.join(", ")))
     }
 
     /// Replaces the values in an expression; the enumeration of its own value.
