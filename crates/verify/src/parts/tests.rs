@@ -230,14 +230,23 @@ fn side(seed: u64, profile: ProfileName, weights: &Weights, letter: char) -> Opt
             before = c;
         }
     }
-    Some(out)
+    Some(out.replace("Gear_TO_INT", &format!("Gear{letter}_TO_INT")))
 }
+
+/// The names of types with a name, and of what is declared of them.
+const NAMED: [&str; 14] = [
+    "Gear", "Turn", "Turns", "Low", "Middle", "High", "gear", "gears", "spin", "turns", "rows", "high",
+    "shown", "Gears",
+];
 
 /// True for the names that random documents give to variables, charts and sections.
 fn is_name(word: &str) -> bool {
     let stem = word.trim_end_matches(|c: char| c.is_ascii_digit());
     match word.len() - stem.len() {
-        0 => ["a", "b", "c", "d", "n", "r", "x", "w", "s", "K", "Sum", "Odd", "Ready"].contains(&word),
+        0 => {
+            ["a", "b", "c", "d", "n", "r", "x", "w", "s", "K", "Sum", "Odd", "Ready"].contains(&word)
+                || NAMED.contains(&word)
+        }
         _ => ["m", "k", "f", "Q", "G", "Exp", "Task", "Act"].contains(&stem),
     }
 }
@@ -277,7 +286,7 @@ fn file_of(profile: ProfileName, sides: &[(String, String)]) -> Option<(String, 
 #[test]
 fn random_charts_side_by_side() {
     #[allow(clippy::disallowed_methods, reason = "how much a test does is told by its environment")]
-    let count = std::env::var("G7_CHARTS").ok().and_then(|v| v.parse().ok()).unwrap_or(30u64);
+    let count = std::env::var("G7_CHARTS").ok().and_then(|v| v.parse().ok()).unwrap_or(40u64);
     let budget = Budget { states: 2_000, scans: 6_000, bytes: 1 << 28, stop: &|| false };
     let (mut charts, mut answers) = (0, 0);
     for profile in ProfileName::ALL {
