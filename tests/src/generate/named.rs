@@ -32,6 +32,6 @@ pub(super) fn named(rng: &Rng, outside: &Sight, out: &mut String) {
          Low: gear := High\n        Gear.Middle, High: gear := {gear}\n      END_CASE\n      turns[1] := spin\n      \
          gears[2] := gear\n    }}\n  }}\n  step Fast {{\n    N high if gear = High or gears[1] <> gear\n    each scan: {{\n      \
          shown := gear\n      turns[2] := (turns[2] + Gear_TO_INT(gear)) MOD {limit}\n      rows[spin MOD 2, 1] := turns[2]\n    \
-         }}\n  }}\n  Slow -> Fast when gear <> Low and ({go})\n  Fast -> Slow when {back} or rows[1, 1] > 2\n}}\n"
+         }}\n  }}\n  Slow -> Fast when gear <> Low and ({go}) and not ({back} or rows[1, 1] > 2)\n  Fast -> Slow when {back} or rows[1, 1] > 2\n}}\n"
     ));
 }

@@ -109,6 +109,9 @@ impl Exec<'_> {
     /// `a := b` of whole arrays.
     pub(super) fn copied(&mut self, scope: ScopeId, to: &Expr, from: &Expr) -> Option<Run<()>> {
         let (ExprKind::Path(to), ExprKind::Path(from)) = (&to.kind, &from.kind) else { return None };
+        if self.is_own(to) {
+            return None; // An array of the file can have the same name.
+        }
         let elements = self.m.array(scope, to)?.to_vec();
         let single = |path: &Path, indexes: &str| {
             let mut names = path.names.clone();

@@ -8,6 +8,7 @@ use g7_model::{Arg, Composed, Expr, ExprKind, Index, Name, Path, VarDecl, VarKin
 use super::exec::Exec;
 use super::exec::Frame;
 use super::model::{FILE, Model, ScopeId};
+use super::named::held;
 use super::resolve::Ref;
 use super::value::{Run, bad};
 
@@ -96,6 +97,11 @@ impl Exec<'_> {
             Some((scope, text)) => self.m.resolve(scope, &Path { names: split_member(self.m, scope, &text) }),
             None => self.m.resolve(FILE, path),
         }
+    }
+
+    /// True if a name is one of the function block whose body runs.
+    pub(super) fn is_own(&self, path: &Path) -> bool {
+        self.running.last().is_some_and(|running| self.within(running, &texts(path)).is_some())
     }
 
     /// A name that the block itself declares.
@@ -203,7 +209,7 @@ impl Exec<'_> {
             if inout {
                 let Some(outer) = self.stands_of(scope, &arg.value)? else { return bad("no variable") };
                 inouts.insert(name.text.to_string(), outer);
-            } else if decl.of.is_some() {
+            } else if decl.of.as_ref().is_some_and(|of| m.types.contains_key(&*of.text)) {
                 let Some(from) = self.stands_of(scope, &arg.value)? else { return bad("no structure") };
                 self.copy_members(&member(name), &from)?;
             } else {
@@ -256,7 +262,7 @@ impl Exec<'_> {
 
     fn put_member(&mut self, (scope, text): &Stands, value: &super::value::Typed) -> Run<()> {
         let Some(&v) = self.m.scopes[*scope].vars.get(text) else { return bad(format!("{text} is nothing")) };
-        self.s.vars[v] = value.to(self.m.vars[v].ty)?;
+        self.s.vars[v] = held(self.m.vars[v].range, value.to(self.m.vars[v].ty)?)?;
         self.written.push(v);
         Ok(())
     }

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::{
-    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Problem, Said, Span, Type, VarDecl,
-    VarKind,
+    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Limits, Name, Problem, Said, Span, Type,
+    VarDecl, VarKind,
 };
 
 /// The variables of all members together, and the statements of all calls together.
@@ -32,7 +32,9 @@ pub struct Composition<'d> {
     /// The types that hold a function block, their own or one of the standard.
     pub(super) blocks: HashSet<&'d str>,
     /// The names of the other types of the file.
-    pub(super) enumerations: Vec<&'d str>,
+    pub(super) enumerations: HashSet<&'d str>,
+    /// Their values.
+    values: HashSet<&'d str>,
     /// The types of which there are variables.
     pub(super) used: HashSet<&'d str>,
     /// How many variables and statements can still be made.
@@ -94,7 +96,8 @@ impl<'d> Composition<'d> {
             sections: HashSet::new(),
             wrong: HashSet::new(),
             blocks: HashSet::new(),
-            enumerations: Vec::new(),
+            enumerations: HashSet::new(),
+            values: HashSet::new(),
             used: HashSet::new(),
             room: MOST,
             full: false,
@@ -104,7 +107,12 @@ impl<'d> Composition<'d> {
         for item in &document.items {
             match item {
                 Item::Var(v) => declare(&mut made.file, v),
-                Item::Type(t) => made.enumerations.extend(t.names.first().map(|n| &*n.text)),
+                Item::Type(t) => {
+                    made.enumerations.extend(t.names.first().map(|n| &*n.text));
+                    if let Some(Limits::Values(values)) = t.limits.as_deref() {
+                        made.values.extend(values.iter().map(|(name, _)| &*name.text));
+                    }
+                }
                 Item::Section(s) => _ = made.sections.insert(&s.name.text),
                 Item::Chart(c) => {
                     let scope = made.charts.entry(&*c.name.text).or_default();
@@ -124,6 +132,11 @@ impl<'d> Composition<'d> {
         self.problems.clear();
         self.expr(&mut e, &Env::outside());
         (e, std::mem::take(&mut self.problems))
+    }
+
+    /// True for a name of the file with which a path in a function block can begin, though it is no variable.
+    pub(super) fn is_known(&self, name: &str) -> bool {
+        self.sections.contains(name) || self.values.contains(name) || self.enumerations.contains(name)
     }
 
     /// The type of a variable, if it is one that the file declares.

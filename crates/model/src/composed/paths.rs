@@ -90,7 +90,7 @@ impl<'d> Composition<'d> {
                     spot.inner = false;
                     return self.follow(spot, rest).map(Some);
                 }
-                if !self.is_variable(&first.name.text, env) && !self.sections.contains(&*first.name.text) {
+                if !self.is_variable(&first.name.text, env) && !self.is_known(&first.name.text) {
                     return Err(self.foreign(&first.name));
                 }
                 self.captured(&first.name, instance, env)?;
