@@ -62,7 +62,7 @@ pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;
 pub use language::Language;
-pub use name::{Index, Name, Param, chart_in, instance_of, slot_of};
+pub use name::{Index, Name, Param, chart_in, instance_of, normal_address, slot_of};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};

@@ -4,10 +4,10 @@
 //! `Chart.variable`, a member of a function block, the activity of a step, the time since its
 //! activation. So a variable called `X12` hides the activity of step 12.
 
-use g7_model::{Name, Problem, ProfileName, Said, Span, Type, codes, say};
+use g7_model::{Name, Problem, ProfileName, Said, Span, Type, codes, normal_address, say};
 
 use super::resolver::{Resolver, Role, nearest};
-use super::scopes::{Entity, Home, Homes, normal_address};
+use super::scopes::{Entity, Home, Homes};
 use crate::ir::{ChartId, ChartRole, StepId, StepSort, VarClass, VarId};
 
 /// The meaning of a path.

@@ -171,14 +171,3 @@ impl<'d> Scopes<'d> {
         self.charts.get(chart.index()).is_some_and(|c| c.proper)
     }
 }
-
-/// A direct address in the form of the tables: upper case, `%IX0.1` as `I0.1`.
-pub(super) fn normal_address(text: &str) -> String {
-    let upper = text.trim_start_matches('%').to_ascii_uppercase();
-    let bytes = upper.as_bytes();
-    if let [b'I' | b'Q' | b'M', b'X', b'0'..=b'9', ..] = bytes {
-        let (area, rest) = upper.split_at(1);
-        return format!("{area}{}", rest.trim_start_matches('X'));
-    }
-    upper
-}

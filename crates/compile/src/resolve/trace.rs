@@ -3,10 +3,10 @@
 
 use std::collections::HashSet;
 
-use g7_model::{Name, Type};
+use g7_model::{Name, Type, normal_address};
 
 use super::resolver::{Frame, Resolver};
-use super::scopes::{Entity, Home, Scopes, normal_address};
+use super::scopes::{Entity, Home, Scopes};
 use crate::ir::{ChartId, StepId, Unit};
 use crate::references::Definition;
 

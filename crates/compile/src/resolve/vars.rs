@@ -1,11 +1,12 @@
 //! Variables: their place in the name spaces, their types, their initial values.
 
 use g7_model::{
-    Expr as Written, ExprKind as Form, Literal, Name, Problem, Said, Span, Type, VarDecl, VarKind, codes, say,
+    Expr as Written, ExprKind as Form, Literal, Name, Problem, Said, Span, Type, VarDecl, VarKind, codes,
+    normal_address, say,
 };
 
 use super::resolver::{Frame, Resolver, Role};
-use super::scopes::{Entity, normal_address};
+use super::scopes::Entity;
 use crate::held::held;
 use crate::ir::{ChartId, ExprKind, Value, VarClass, VarId};
 

@@ -300,7 +300,7 @@ impl<'d> Composition<'d> {
             && left.iter().zip(&wanted).all(|(a, b)| equal(&a.0, &b.0) && equal(&a.1, &b.1));
         let same = match (spot.of, self.type_of(parameter.decl)) {
             (Some(a), Some(b)) => a.name.text == b.name.text,
-            (None, None) => spot.decl.ty == parameter.decl.ty,
+            (None, None) => spot.decl.ty == parameter.decl.ty && spot.decl.limits == parameter.decl.limits,
             _ => false,
         };
         if !same || !fits || spot.own.len() > dimensions.len() || spot.decl.kind == VarKind::Const {

@@ -190,7 +190,11 @@ impl<'d> Held<'d> {
     pub(super) fn typed(&mut self, e: &mut Expr, place: Place<'_>) -> Option<&'d str> {
         let at = e.at;
         match &mut e.kind {
-            ExprKind::Literal(_) | ExprKind::Direct(_) | ExprKind::Bad => None,
+            ExprKind::Literal(_) | ExprKind::Bad => None,
+            ExprKind::Direct(text) => match self.scopes.at_address(text) {
+                Some((Var { holds: Holds::Values(ty), .. }, false)) => Some(ty),
+                _ => None,
+            },
             ExprKind::Path(path) => {
                 let found = self.scopes.find(path, place);
                 if let Some(problem) = self.no_value(&found, path, at.0) {
@@ -410,6 +414,9 @@ impl<'d> Held<'d> {
                 index.iter_mut().for_each(|e| self.plain(e, place));
                 (&**path, bit.is_some())
             }
+            ExprKind::Direct(text) => {
+                return self.scopes.at_address(text).map_or((None, false), |(var, bit)| (Some(var), bit));
+            }
             _ => return (None, false),
         };
         match self.scopes.find(path, place) {
@@ -427,7 +434,10 @@ impl<'d> Held<'d> {
     }
 
     fn only_assigned(&mut self, target: &Expr) {
-        let name = target.kind.variable().unwrap_or_default();
+        let name = match &target.kind {
+            ExprKind::Direct(text) => format!("%{text}"),
+            kind => kind.variable().unwrap_or_default(),
+        };
         let what = say!("`{}` has bounds or is of an enumeration; only an assignment writes it", name);
         let problem = Problem::new(&codes::WRONG_TYPE, target.at.0, what);
         self.problems.push(problem.help(say!("use a variable without bounds here, and assign it")));

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::declare::numbered;
-use crate::{ChartItem, Document, Item, Limits, Name, Path, Type, VarDecl, VarKind};
+use crate::{ChartItem, Document, Item, Limits, Name, Path, Type, VarDecl, VarKind, normal_address};
 
 /// The values that a variable can hold.
 #[derive(Clone, Copy, Debug)]
@@ -53,6 +53,8 @@ type Vars<'d> = HashMap<&'d str, Var<'d>>;
 pub(super) struct Scopes<'d> {
     file: Vars<'d>,
     charts: HashMap<&'d str, Vars<'d>>,
+    /// The variables with limits that have a direct address, by that.
+    addresses: HashMap<String, Var<'d>>,
     pub(super) enumerations: HashMap<&'d str, Vec<(&'d Name, i128)>>,
     /// Each value, with the enumerations that have it.
     values: HashMap<&'d str, Vec<(&'d str, i128)>>,
@@ -63,13 +65,17 @@ impl<'d> Scopes<'d> {
         let mut made = Scopes {
             file: HashMap::new(),
             charts: HashMap::new(),
+            addresses: HashMap::new(),
             enumerations: HashMap::new(),
             values: HashMap::new(),
         };
         for item in &document.items {
             match item {
                 Item::Type(t) => made.enumeration(t),
-                Item::Var(v) => declare(&mut made.file, v),
+                Item::Var(v) => {
+                    declare(&mut made.file, v);
+                    made.place(v);
+                }
                 Item::Chart(c) => {
                     let vars = made.charts.entry(&*c.name.text).or_default();
                     for item in &c.items {
@@ -77,11 +83,26 @@ impl<'d> Scopes<'d> {
                             declare(vars, v);
                         }
                     }
+                    c.vars().for_each(|v| made.place(v));
                 }
                 _ => {}
             }
         }
         made
+    }
+
+    fn place(&mut self, v: &'d VarDecl) {
+        let address = v.address.as_ref().filter(|a| v.limits.is_some() && a.text.starts_with('%'));
+        if let Some(address) = address {
+            let var = Var { holds: holds(v), array: false, number: None };
+            self.addresses.entry(normal_address(&address.text)).or_insert(var);
+        }
+    }
+
+    /// The variable with limits at a direct address, and true if only a bit of it is meant.
+    pub(super) fn at_address(&self, text: &str) -> Option<(Var<'d>, bool)> {
+        let (word, bit) = text.split_once(':').map_or((text, false), |(word, _)| (word, true));
+        self.addresses.get(&normal_address(word)).map(|var| (*var, bit))
     }
 
     fn enumeration(&mut self, t: &'d VarDecl) {
