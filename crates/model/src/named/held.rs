@@ -192,7 +192,7 @@ impl<'d> Held<'d> {
         match &mut e.kind {
             ExprKind::Literal(_) | ExprKind::Bad => None,
             ExprKind::Direct(text) => match self.scopes.at_address(text) {
-                Some((Var { holds: Holds::Values(ty), .. }, false)) => Some(ty),
+                Some((Var { holds: Holds::Values(ty), .. }, _)) => Some(ty),
                 _ => None,
             },
             ExprKind::Path(path) => {
@@ -203,7 +203,8 @@ impl<'d> Held<'d> {
                     return None;
                 }
                 match found {
-                    Found::Var(Var { holds: Holds::Values(ty), .. }, false) => Some(ty),
+                    // A bit of a value counts as one, so that it can stand nowhere.
+                    Found::Var(Var { holds: Holds::Values(ty), .. }, _) => Some(ty),
                     Found::Value(ty, number) => {
                         e.kind = ExprKind::Literal(Literal::Int(number, None));
                         Some(ty)
@@ -211,10 +212,10 @@ impl<'d> Held<'d> {
                     _ => None,
                 }
             }
-            ExprKind::Element(path, index, bit) => {
+            ExprKind::Element(path, index, _) => {
                 index.iter_mut().for_each(|e| self.plain(e, place));
                 match self.scopes.find(path, place) {
-                    Found::Var(Var { holds: Holds::Values(ty), .. }, false) if bit.is_none() => Some(ty),
+                    Found::Var(Var { holds: Holds::Values(ty), .. }, _) => Some(ty),
                     _ => None,
                 }
             }

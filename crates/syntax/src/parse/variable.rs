@@ -296,7 +296,11 @@ impl Parser<'_> {
                     say!("the only type of times is TIME")
                 }
                 (_, Some(near)) => say!("did you mean `{near}`?"),
-                _ => say!("there are {}", Said::foreign(names.join(", "))),
+                // A variable or a member can be of a type of the file, so this is neither.
+                _ => say!(
+                    "parameters, local variables and states of a plant have a type of the language: {}",
+                    Said::foreign(names.join(", "))
+                ),
             })
         });
         self.bump();
