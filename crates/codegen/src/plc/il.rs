@@ -18,6 +18,7 @@ pub(crate) fn print(e: &Block, set_reset: bool) -> String {
         out: String::new(),
         labels: 0,
         loops: Vec::new(),
+        wanted: None,
     };
     for (guard, part) in e.guarded() {
         match guard {
@@ -43,6 +44,8 @@ struct Printer {
     labels: usize,
     /// Labels behind the loops round this point.
     loops: Vec<String>,
+    /// The type that is wanted of the value in hand, if that has none of its own.
+    wanted: Option<String>,
 }
 
 impl Printer {
@@ -101,7 +104,11 @@ impl Printer {
         }
         match s {
             St::Title(note) | St::Note(note) => self.comment(note),
-            St::Assign(to, e) => self.store(e, "ST", &expression(to)),
+            St::Assign(to, e) => {
+                let ty = self.variables.type_name(to).to_owned();
+                self.load_as(e, &ty);
+                self.line(&format!("ST {}", expression(to)));
+            }
             St::If(c, then, other) if other.is_empty() => self.when(c, then),
             St::If(c, then, other) => {
                 let (behind, end) = (self.label(), self.label());
@@ -152,7 +159,10 @@ impl Printer {
 
     /// The operand of a value, the same way.
     fn kept_of(&mut self, of: &Ex, e: &Ex) -> Ex {
-        let ty = self.variables.operand_type(of, e).to_owned();
+        let ty = match &self.wanted {
+            Some(ty) if of.is_open() && e.is_open() => ty.clone(),
+            _ => self.variables.operand_type(of, e).to_owned(),
+        };
         self.kept_as(e, &ty)
     }
 
@@ -163,9 +173,16 @@ impl Printer {
             return e.clone();
         }
         let name = self.variables.memory(ty);
-        self.load(e);
+        self.load_as(e, ty);
         self.line(&format!("ST {name}"));
         Ex::Var(name)
+    }
+
+    /// Loads a value where one of a type is wanted.
+    fn load_as(&mut self, e: &Ex, ty: &str) {
+        let outer = std::mem::replace(&mut self.wanted, e.is_open().then(|| ty.to_owned()));
+        self.load(e);
+        self.wanted = outer;
     }
 
     /// An expression whose brackets hold contacts only: whatever is deeper, and
