@@ -13,15 +13,18 @@ pub(super) fn named(rng: &Rng, outside: &Sight, out: &mut String) {
     }
     let (go, back) = (outside.boolean(&mut rng, 2), outside.boolean(&mut rng, 1));
     let (by, limit) = (rng.between(1, 3), rng.between(4, 9));
-    let ring = format!("(spin + {by}) MOD {}", limit + 1);
-    // The second one leaves the bounds after some scans: the fault `range`.
+    // The first one leaves the bounds after some scans: the fault `range`. The last one comes to rest.
     let spin = match rng.between(0, 9) {
         0 => format!("spin + {by}"),
-        1..=3 => format!("LIMIT(0, spin + SEL({go}, -1, {by}), {limit})"),
-        _ => ring,
+        1 => format!("(spin + {by}) MOD {}", limit + 1),
+        2..=4 => format!("LIMIT(0, spin + SEL({go}, -1, {by}), {limit})"),
+        _ => format!("SEL({go}, {by}, {limit})"),
     };
-    let gear =
-        rng.one(["SEL(high, Low, Gear.High)", "gears[1 + spin MOD 2]", "MUX(spin MOD 3, Low, Middle, High)"]);
+    let gear = rng.one([
+        "SEL(high, Middle, Gear.High)",
+        "gears[1 + spin MOD 2]",
+        "MUX(spin MOD 3, Low, Middle, High)",
+    ]);
     out.push_str(&format!(
         "type Gear : (Low, Middle := {by}, High) := Middle\ntype Turn : INT(0..{limit}) := {by}\n\
          type Turns : ARRAY[1..2] OF Turn\nvar gear : Gear\nvar gears : ARRAY[1..2] OF Gear := [High]\nvar spin : Turn\n\
@@ -31,7 +34,7 @@ pub(super) fn named(rng: &Rng, outside: &Sight, out: &mut String) {
         "chart Gears {{\n  initial step Slow {{\n    each scan: {{\n      spin := {spin}\n      CASE gear OF\n        \
          Low: gear := High\n        Gear.Middle, High: gear := {gear}\n      END_CASE\n      turns[1] := spin\n      \
          gears[2] := gear\n    }}\n  }}\n  step Fast {{\n    N high if gear = High or gears[1] <> gear\n    each scan: {{\n      \
-         shown := gear\n      turns[2] := (turns[2] + Gear_TO_INT(gear)) MOD {limit}\n      rows[spin MOD 2, 1] := turns[2]\n    \
+         shown := gear\n      turns[2] := spin * Gear_TO_INT(gear) MOD {limit}\n      rows[spin MOD 2, 1] := turns[2]\n    \
          }}\n  }}\n  Slow -> Fast when gear <> Low and ({go}) and not ({back} or rows[1, 1] > 2)\n  Fast -> Slow when {back} or rows[1, 1] > 2\n}}\n"
     ));
 }
