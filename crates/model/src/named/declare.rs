@@ -296,12 +296,6 @@ impl<'d> Types<'d> {
             self.problems.push(Problem::new(&codes::OUT_OF_RANGE, at, what));
             return None;
         }
-        if v.kind == VarKind::Input {
-            let what = say!("the values of an input come from outside, so its type has no bounds");
-            let help = say!("copy it by `LIMIT` into a variable with bounds");
-            self.problems.push(Problem::new(&codes::WRONG_TYPE, at, what).help(help));
-            return None;
-        }
         Some(Box::new(Limits::Range(whole(low, least), whole(high, most))))
     }
 }

@@ -6,7 +6,7 @@ use super::checks::Checks;
 use super::scopes::{Found, Holds, Place, Scopes, Var};
 use crate::{
     Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Problem, Said,
-    Span, StandardFunction, Type, VarDecl, codes, say,
+    Span, StandardFunction, Type, VarDecl, VarKind, codes, say,
 };
 
 /// Most values that a message lists.
@@ -93,6 +93,16 @@ impl<'d> Held<'d> {
             _ => None,
         };
         let values = v.init.iter_mut().chain(&mut v.safe).chain(v.usual.as_deref_mut());
+        if v.kind == VarKind::Input && range.is_some() {
+            let at = v.names.first().map_or(v.at.0, |n| n.at.0);
+            let what = say!("the values of an input come from outside, so its type has no bounds");
+            let help = say!("copy it by `LIMIT` into a variable with bounds");
+            let problem = Problem::new(&codes::WRONG_TYPE, at, what).help(help);
+            // Of a structure, each element of an array would tell it.
+            if !self.problems.contains(&problem) {
+                self.problems.push(problem);
+            }
+        }
         for e in values {
             match &mut e.kind {
                 ExprKind::List(list) => {
