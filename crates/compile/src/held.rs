@@ -1,4 +1,5 @@
-//! The values of a variable, where they are less than all of its type: known to all that show and set values.
+//! The values that a variable of an enumeration or of a type with bounds can have. Whatever shows or sets values reads them
+//! in [`crate::symbols`].
 
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -8,14 +9,14 @@ use g7_model::{Limits, Type, VarDecl};
 /// The values of a variable of an integer type with bounds, or of an enumeration.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Held {
-    /// The least and the greatest one.
+    /// Bounds: the least and the greatest value.
     Range(i128, i128),
-    /// The name of the enumeration, and each value with its number.
+    /// An enumeration: its name, and each of its values with the number.
     Names(Box<str>, Box<[(Box<str>, i128)]>),
 }
 
 impl Held {
-    /// True if the number is one of the values. An input of an enumeration can have others: they come from outside.
+    /// True if the number is one of the values. An input of an enumeration can receive others from outside.
     pub fn admits(&self, number: i128) -> bool {
         match self {
             Held::Range(least, most) => (*least..=*most).contains(&number),
@@ -43,7 +44,8 @@ impl Held {
         }
     }
 
-    /// The type with all that its values mean, to be compared with that of another text: `Mode(Off=0,Manual=1)`.
+    /// The type with its values and their numbers, as in `Mode(Off=0,Manual=1)`: if two texts give the same, a number means
+    /// the same in both.
     pub fn meaning(&self, ty: Type) -> String {
         match self {
             Held::Range(..) => self.declared(ty),
@@ -64,19 +66,20 @@ impl Held {
     }
 }
 
-/// The values of the variables of a declaration, among the enumerations of a document.
+/// The values that the variables of a declaration can have; `enumerations` are those of the document.
 pub(crate) fn held(v: &VarDecl, enumerations: &HashMap<&str, Arc<Held>>) -> Option<Arc<Held>> {
     match v.limits.as_deref()? {
-        Limits::Range(least, most) => Some(Arc::new(Held::Range(least.kind.whole()?, most.kind.whole()?))),
         Limits::Of(name) => enumerations.get(&*name.text).cloned(),
-        Limits::Values(_) => None,
+        Limits::Range(..) | Limits::Values(_) => {
+            v.range().map(|(least, most)| Arc::new(Held::Range(least, most)))
+        }
     }
 }
 
-/// The values of an enumeration, by its name.
+/// The name of an enumeration and its values; None for other types.
 pub(crate) fn enumeration(t: &VarDecl) -> Option<(&str, Arc<Held>)> {
-    let (name, Limits::Values(values)) = (t.names.first()?, t.limits.as_deref()?) else { return None };
-    let numbered = g7_model::named::numbered(values).into_iter();
+    let name = t.names.first().filter(|_| !t.values().is_empty())?;
+    let numbered = g7_model::named::numbered(t.values()).into_iter();
     let all = numbered.filter_map(|(name, n)| Some((name.text.clone(), n?))).collect();
     Some((&name.text, Arc::new(Held::Names(name.text.clone(), all))))
 }

@@ -101,7 +101,7 @@ pub struct Var {
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
-    /// Its values, where they are less than all of its type.
+    /// The values that it can have, if it is of an enumeration or has bounds.
     pub held: Option<Arc<Held>>,
     /// Number of elements: 1, except for the tables of a plant.
     pub elements: u32,

@@ -10,7 +10,7 @@ use std::sync::Arc;
 use g7_engine::{Code, Program};
 use g7_model::composed::{Composition, decomposed};
 use g7_model::instances::instantiated;
-use g7_model::named::{Held, declared, held};
+use g7_model::named::{Checker, declared, held};
 use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
@@ -76,8 +76,8 @@ fn asked<'q>(
     let (mut asked, mut problems) = (Cow::Borrowed(queries), Vec::new());
     let none = queries.is_empty();
     let mut types = if none { None } else { Composition::of(instances) };
-    let mut held = if none { None } else { Held::of(composed) };
-    if types.is_none() && held.is_none() {
+    let mut checker = if none { None } else { Checker::of(composed) };
+    if types.is_none() && checker.is_none() {
         return (asked, problems);
     }
     for query in asked.to_mut() {
@@ -85,7 +85,7 @@ fn asked<'q>(
             *query = new;
             problems.append(&mut wrong);
         }
-        if let Some((new, mut wrong)) = held.as_mut().map(|h| h.query(query)) {
+        if let Some((new, mut wrong)) = checker.as_mut().map(|c| c.query(query)) {
             *query = new;
             problems.append(&mut wrong);
         }

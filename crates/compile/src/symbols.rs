@@ -69,7 +69,7 @@ pub struct Variable {
     pub class: VarClass,
     /// Its type.
     pub ty: Type,
-    /// Its values, where they are less than all of its type.
+    /// The values that it can have, if it is of an enumeration or has bounds.
     pub held: Option<Arc<Held>>,
     /// Its first word.
     pub addr: Addr,

@@ -2,7 +2,7 @@
 
 use crate::words::Told;
 use crate::{
-    Action, Arg, Block, Body, Expr, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type,
+    Action, Arg, Block, Body, Expr, Limits, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type,
 };
 
 /// All of one file.
@@ -48,7 +48,7 @@ pub enum Item {
     Instance(Instance),
     /// A structure, or a function block of one's own.
     Composed(Composed),
-    /// `type Percent : INT(0..100)`, `type Mode : (Manual, Automatic)`: one name, and what variables of the type are.
+    /// `type Percent : INT(0..100)` or `type Mode : (Manual, Automatic)`: a declaration whose one name is that of the type.
     Type(VarDecl),
     /// `action Pump { … }`.
     Action(NamedAction),
@@ -229,9 +229,10 @@ pub struct VarDecl {
     pub ty: Type,
     /// The name of a type that the file declares, see [`Composed`] and [`Item::Type`].
     pub of: Option<Box<Name>>,
-    /// The values that they can hold, where these are less than all of `ty`.
+    /// The values that they can have, if these are not all values of `ty`.
     pub limits: Option<Box<Limits>>,
-    /// The value of what `init` leaves out, given by a declared type; the type's zero when absent. No text gives one.
+    /// The value of elements that `init` leaves out, if a declared type gives one; otherwise it is the type's zero. The
+    /// pass [`crate::named`] makes it; the parser never does.
     pub usual: Option<Box<Expr>>,
     /// Initial value; the type's zero when absent. Of arrays, a [`crate::ExprKind::List`].
     pub init: Option<Expr>,
@@ -249,19 +250,17 @@ pub struct VarDecl {
     pub at: Place,
 }
 
-/// The values of a variable of an integer type, where it cannot hold them all (IEC 61131-3:2003, 2.3.3.1).
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Limits {
-    /// A subrange, `INT(0..100)`: both ends belong to it.
-    Range(Expr, Expr),
-    /// An enumeration, `(Manual, Automatic := 5)`, in the declaration of its type alone: each value, with its number where
-    /// one is written.
-    Values(Vec<(Name, Option<Expr>)>),
-    /// The values of this enumeration; [`crate::named`] makes it. No text gives it.
-    Of(Name),
-}
-
 impl VarDecl {
+    /// See [`Limits::values`].
+    pub fn values(&self) -> &[(Name, Option<Expr>)] {
+        self.limits.as_deref().map_or(&[], Limits::values)
+    }
+
+    /// See [`Limits::range`].
+    pub fn range(&self) -> Option<(i128, i128)> {
+        self.limits.as_deref().and_then(Limits::range)
+    }
+
     /// Variables with names and a type alone.
     pub fn new(kind: VarKind, names: Vec<Name>, ty: Type, at: Place) -> VarDecl {
         VarDecl {

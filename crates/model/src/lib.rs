@@ -31,6 +31,7 @@ mod fix;
 mod functions;
 pub mod instances;
 mod language;
+mod limits;
 mod name;
 pub mod named;
 mod nanos;
@@ -54,14 +55,15 @@ pub use action::{
 };
 pub use chart::{
     Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
-    Limits, NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch,
-    TargetPlc, Transition, VarDecl, VarKind,
+    NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
+    Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_name, element_parts, filled};
 pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;
 pub use language::Language;
+pub use limits::Limits;
 pub use name::{Index, Name, Param, chart_in, instance_of, normal_address, slot_of};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};

@@ -194,19 +194,18 @@ fn words(c: &Compiled, was: &Compiled, state: &State, lost: &mut Vec<Said>) -> V
     words
 }
 
-/// True if a variable can hold the value that it had, with the same meaning.
+/// True if the changed variable can have the old value, and this means the same: a number within the bounds, or the number
+/// of a value with the same name.
 fn is_held(now: &Variable, before: &Variable, state: &State) -> bool {
-    let Some(held) = now.held.as_ref().filter(|held| before.held.as_ref() != Some(held)) else {
-        // A number that had a name has none any more.
-        return now.held.is_some() == before.held.is_some()
-            || matches!(before.held.as_deref(), Some(Held::Range(..)));
-    };
+    if now.held == before.held {
+        return true;
+    }
     let number = before.value(state).first().map_or(0, |word| i128::from(*word as i64));
-    let name = before.held.as_ref().and_then(|held| held.name_of(number));
-    held.admits(number) && held.name_of(number) == name
+    let name = |v: &'_ Variable| v.held.as_ref().and_then(|held| held.name_of(number).map(str::to_owned));
+    now.held.as_ref().is_none_or(|held| held.admits(number)) && name(now) == name(before)
 }
 
-/// The type of a variable, told in one of two ways if it holds less than its type does.
+/// The type of a variable as text; `told` tells an enumeration or a type with bounds.
 fn declared(v: &Variable, told: fn(&Held, Type) -> String) -> String {
     v.held.as_ref().map_or_else(|| v.ty.to_string(), |held| told(held, v.ty))
 }

@@ -128,9 +128,8 @@ impl Item {
         }
         let names = Said::foreign(held.names().collect::<Vec<_>>().join(", "));
         let value = read(text, self.kind);
-        let admitted = |v: &Value| held.admits(v.number(self.kind) as i128);
         match (&**held, value) {
-            (_, Ok(value)) if admitted(&value) => Ok(value),
+            (_, Ok(value)) if self.admits(&value) => Ok(value),
             (Held::Range(least, most), Ok(_)) => {
                 let range = Said::foreign(format!("{least} .. {most}"));
                 Err(say!("`{plain}` is outside {range}"))
@@ -138,6 +137,11 @@ impl Item {
             (Held::Range(..), Err(why)) => Err(why),
             (Held::Names(..), _) => Err(say!("`{}` is one of {names}", self.name)),
         }
+    }
+
+    /// True if the item can have the value.
+    pub fn admits(&self, value: &Value) -> bool {
+        self.held.as_ref().is_none_or(|held| held.admits(value.number(self.kind) as i128))
     }
 
     /// A value as text for the user: of an enumeration its name.

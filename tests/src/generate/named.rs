@@ -13,7 +13,7 @@ pub(super) fn named(rng: &Rng, outside: &Sight, out: &mut String) {
     }
     let (go, back) = (outside.boolean(&mut rng, 2), outside.boolean(&mut rng, 1));
     let (by, limit) = (rng.between(1, 3), rng.between(4, 9));
-    // The first one leaves the bounds after some scans: the fault `range`. The last one comes to rest.
+    // `spin + by` is the fault `range` after some scans. With `SEL` alone, the chart comes to rest.
     let spin = match rng.between(0, 9) {
         0 => format!("spin + {by}"),
         1 => format!("(spin + {by}) MOD {}", limit + 1),

@@ -18,10 +18,9 @@ pub(super) fn named(doc: &Document) -> BTreeMap<String, VarDecl> {
 
 /// The numbers of the values of an enumeration: as written, or one more than the value before.
 fn numbers(t: &VarDecl) -> Vec<(String, i128)> {
-    let Some(Limits::Values(values)) = t.limits.as_deref() else { return Vec::new() };
     let mut next = 0;
     let mut all = Vec::new();
-    for (name, written) in values {
+    for (name, written) in t.values() {
         let number = written.as_ref().and_then(|e| e.kind.whole()).unwrap_or(next);
         all.push((name.text.to_string(), number));
         next = number + 1;
@@ -30,7 +29,7 @@ fn numbers(t: &VarDecl) -> Vec<(String, i128)> {
 }
 
 impl Model {
-    /// The declaration with all that its named types say.
+    /// The declaration with the type, the bounds and the values that its named type declares, in the place of the name.
     pub(super) fn with_type(&self, v: &VarDecl) -> VarDecl {
         let mut own = v.clone();
         while let Some(t) = own.of.as_ref().and_then(|of| self.named.get(&*of.text)) {

@@ -161,12 +161,11 @@ impl Ex {
         found
     }
 
-    /// True if its values are written numbers, also if a condition chooses among them: it takes the type that is wanted
-    /// where it stands.
+    /// True for a constant, and for SEL and MUX among constants: such a value has no type of its own, but the type that is
+    /// wanted where it stands.
     pub(crate) fn is_open(&self) -> bool {
         match self {
             Ex::Call(n, args) if matches!(n.as_str(), "SEL" | "MUX") => args.iter().skip(1).all(Ex::is_open),
-            Ex::Bool(_) | Ex::Time(_) => false,
             e => e.is_constant(),
         }
     }

@@ -44,7 +44,7 @@ struct Printer {
     labels: usize,
     /// Labels behind the loops round this point.
     loops: Vec<String>,
-    /// The type that is wanted of the value in hand, if that has none of its own.
+    /// While a value without a type of its own is printed: the type that is wanted there.
     wanted: Option<String>,
 }
 
@@ -178,7 +178,7 @@ impl Printer {
         Ex::Var(name)
     }
 
-    /// Loads a value where one of a type is wanted.
+    /// Loads a value where this type is wanted.
     fn load_as(&mut self, e: &Ex, ty: &str) {
         let outer = std::mem::replace(&mut self.wanted, e.is_open().then(|| ty.to_owned()));
         self.load(e);

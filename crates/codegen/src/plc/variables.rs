@@ -95,7 +95,7 @@ impl Variables {
         for e in list {
             let ty = self.type_name(e);
             // The type of a TIME is written on it.
-            if !(e.is_constant() || e.is_open()) || ty == "TIME" {
+            if !e.is_open() || ty == "TIME" {
                 return ty;
             }
             of_constant = of_constant.or(Some(ty));
@@ -107,7 +107,7 @@ impl Variables {
     /// is wanted there.
     pub(crate) fn operand_type<'a>(&'a self, of: &'a Ex, operand: &'a Ex) -> &'a str {
         let own = self.type_name(operand);
-        if !(operand.is_constant() || operand.is_open()) || own == "BOOL" || own == "TIME" {
+        if !operand.is_open() || own == "BOOL" || own == "TIME" {
             return own;
         }
         let wanted = match of {

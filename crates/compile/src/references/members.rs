@@ -4,7 +4,8 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Body, ChartItem, Composed, Document, Item, Limits, Local, Name, Type, VarDecl};
+use g7_model::composed::DEEP;
+use g7_model::{Body, ChartItem, Composed, Document, Item, Local, Name, Type, VarDecl};
 
 use super::named::Definition;
 use crate::resolve::Traced;
@@ -92,14 +93,10 @@ fn locals(of: &Composed) -> &[Local] {
     }
 }
 
-/// The values that a type declares, each behind the name of the type.
+/// The values of an enumeration, each with the name of the enumeration before it; none for other types.
 pub fn values(t: &VarDecl) -> impl Iterator<Item = (&Name, &Name)> {
-    let declared = match t.limits.as_deref() {
-        Some(Limits::Values(values)) => values.as_slice(),
-        _ => &[],
-    };
     let of = t.names.first();
-    declared.iter().filter_map(move |(name, _)| Some((of?, name)))
+    t.values().iter().filter_map(move |(name, _)| Some((of?, name)))
 }
 
 impl<'d> Types<'d> {
@@ -141,16 +138,12 @@ impl<'d> Types<'d> {
     /// The names of a path that is a value of an enumeration: `Automatic`, `Mode.Automatic`. None for other paths, and for
     /// a value of two enumerations.
     pub(super) fn value(&self, names: &[Name]) -> Vec<Traced> {
-        let value = |of: &Name, name: &Name| Definition::Value {
-            of: of.text.to_string(),
-            name: name.text.to_string(),
-        };
         match names {
             [only] => {
                 let mut all =
                     self.others.values().flat_map(|t| values(t)).filter(|(_, v)| v.text == only.text);
                 match (all.next(), all.next()) {
-                    (Some((of, name)), None) => vec![(0, value(of, name), 0)],
+                    (Some((of, name)), None) => vec![(0, Definition::value(of, name), 0)],
                     _ => Vec::new(),
                 }
             }
@@ -158,7 +151,7 @@ impl<'d> Types<'d> {
                 let Some(t) = self.others.get(&*ty.text) else { return Vec::new() };
                 let mut all = vec![(0, Definition::Type(ty.text.to_string()), 0)];
                 let found = values(t).find(|(_, v)| v.text == name.text);
-                all.extend(found.map(|(of, name)| (1, value(of, name), 0)));
+                all.extend(found.map(|(of, name)| (1, Definition::value(of, name), 0)));
                 all
             }
             _ => Vec::new(),
@@ -188,12 +181,12 @@ impl<'d> Types<'d> {
         }
     }
 
-    /// The type of a name; one that stands for others is followed, as far as types can stand in each other.
+    /// The type with this name. If it is another name for a type, that type; `passed` counts such names on the way.
     fn kind_named(&self, name: &str, passed: usize) -> Kind<'d> {
         if let Some(composed) = self.named(name) {
             return Kind::Composed(composed);
         }
-        let Some(t) = self.others.get(name).filter(|_| passed < 64) else {
+        let Some(t) = self.others.get(name).filter(|_| passed < DEEP) else {
             return Kind::Unknown;
         };
         match &t.of {

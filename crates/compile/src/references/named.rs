@@ -2,7 +2,7 @@
 //!
 //! `resolve::trace` gives a definition for each name, `walk` the place and the way of writing.
 
-use g7_model::Span;
+use g7_model::{Name, Span};
 
 /// Something that has a name.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -71,6 +71,13 @@ pub enum Definition {
         /// Its name.
         name: String,
     },
+}
+
+impl Definition {
+    /// The value `name` of the enumeration `of`.
+    pub(super) fn value(of: &Name, name: &Name) -> Definition {
+        Definition::Value { of: of.text.to_string(), name: name.text.to_string() }
+    }
 }
 
 /// How a name is written at a place.

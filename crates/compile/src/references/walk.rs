@@ -346,10 +346,9 @@ impl<'d> Walk<'_, 'd> {
             self.add(name.at.0, Definition::Type(name.text.to_string()), Written::Declared);
         }
         for (of, name) in values(t) {
-            let def = Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
-            self.add(name.at.0, def, Written::Declared);
+            self.add(name.at.0, Definition::value(of, name), Written::Declared);
         }
-        // Its own first value needs no type before it, whatever else has this name.
+        // In `type Mode : (Off, …) := Off` the value is that of this type, also if another type has such a value.
         let first = match t.init.as_ref().map(|e| &e.kind) {
             Some(ExprKind::Path(path)) if path.names.len() == 1 => path.names.first(),
             _ => None,
@@ -357,8 +356,7 @@ impl<'d> Walk<'_, 'd> {
         let own = first.and_then(|name| values(t).find(|(_, v)| v.text == name.text).zip(Some(name)));
         match own {
             Some(((of, _), name)) => {
-                let def = Definition::Value { of: of.text.to_string(), name: name.text.to_string() };
-                self.add(name.at.0, def, Written::Path { first: true, only: true });
+                self.add(name.at.0, Definition::value(of, name), Written::Path { first: true, only: true });
             }
             None => self.declaration(t),
         }

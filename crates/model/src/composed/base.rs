@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::{
-    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Limits, Name, Problem, Said, Span, Type,
-    VarDecl, VarKind,
+    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Problem, Said, Span, Type, VarDecl,
+    VarKind,
 };
 
 /// The variables of all members together, and the statements of all calls together.
@@ -109,9 +109,7 @@ impl<'d> Composition<'d> {
                 Item::Var(v) => declare(&mut made.file, v),
                 Item::Type(t) => {
                     made.enumerations.extend(t.names.first().map(|n| &*n.text));
-                    if let Some(Limits::Values(values)) = t.limits.as_deref() {
-                        made.values.extend(values.iter().map(|(name, _)| &*name.text));
-                    }
+                    made.values.extend(t.values().iter().map(|(name, _)| &*name.text));
                 }
                 Item::Section(s) => _ = made.sections.insert(&s.name.text),
                 Item::Chart(c) => {
@@ -134,7 +132,7 @@ impl<'d> Composition<'d> {
         (e, std::mem::take(&mut self.problems))
     }
 
-    /// True for a name of the file with which a path in a function block can begin, though it is no variable.
+    /// True if a path in a function block can begin with this name of the file: a section, an enumeration or its value.
     pub(super) fn is_known(&self, name: &str) -> bool {
         self.sections.contains(name) || self.values.contains(name) || self.enumerations.contains(name)
     }

@@ -30,7 +30,8 @@ use std::borrow::Cow;
 use crate::{Body, Composed, Document, Item, Problem};
 
 pub use base::Composition;
-pub(crate) use types::{of_language, unknown_type};
+pub use types::DEEP;
+pub(crate) use types::{defined_twice, of_language, unknown_type};
 
 /// Replaces the structures and function blocks of a document. Returns the problems of types and calls as well.
 pub fn decomposed(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {

@@ -6,7 +6,7 @@ use super::base::{Composition, MOST};
 use crate::{Composed, Document, Item, Name, Problem, Span, Type, VarDecl, codes, say};
 
 /// How deep types can stand in each other.
-const DEEP: usize = 64;
+pub const DEEP: usize = 64;
 
 impl<'d> Composition<'d> {
     /// Collects the types. A type that is wrong as such has no members for what follows.
@@ -43,9 +43,7 @@ impl<'d> Composition<'d> {
     }
 
     fn twice(&mut self, name: &Name, first: Span) {
-        let problem =
-            Problem::new(&codes::DEFINED_TWICE, name.at.0, say!("`{}` is defined twice", name.text));
-        self.problems.push(problem.related(first, say!("defined here first")));
+        self.problems.push(defined_twice(name, first));
     }
 
     fn members(&mut self, c: &'d Composed) {
@@ -125,7 +123,7 @@ impl<'d> Composition<'d> {
     }
 }
 
-/// The problem of a name that is none of these types.
+/// The problem of a type that does not exist; `names` are those that do.
 pub(crate) fn unknown_type(of: &Name, names: &[&str]) -> Problem {
     let name = &of.text;
     let problem = Problem::new(&codes::UNKNOWN_WORD, of.at.0, say!("there is no type `{name}`"));
@@ -142,4 +140,10 @@ pub(crate) fn of_language(name: &Name) -> Option<Problem> {
     Type::named(&name.text.to_ascii_uppercase())?;
     let what = say!("`{}` is a type of the language", name.text);
     Some(Problem::new(&codes::DEFINED_TWICE, name.at.0, what).help(say!("choose another name")))
+}
+
+/// The problem of a name that is declared a second time; `first` is the place of the first one.
+pub(crate) fn defined_twice(name: &Name, first: Span) -> Problem {
+    let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, say!("`{}` is defined twice", name.text));
+    problem.related(first, say!("defined here first"))
 }

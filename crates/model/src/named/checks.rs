@@ -1,4 +1,4 @@
-//! The functions that hold a value within bounds.
+//! The functions that check an assigned value against the bounds of the variable.
 
 use std::collections::{HashMap, HashSet};
 
@@ -8,9 +8,12 @@ use crate::{
     Span, Stmt, StmtKind, Type,
 };
 
-/// The functions made so far, and the names that they cannot have.
+/// The check functions of one document.
+#[derive(Default)]
 pub(super) struct Checks {
+    /// The names in the document. A new function must have another name.
     taken: HashSet<Box<str>>,
+    /// The name of the function for each type and its bounds.
     made: HashMap<(Type, i128, i128), Name>,
     functions: Vec<Item>,
 }
@@ -33,8 +36,8 @@ impl Checks {
         Checks { taken: names.0, made: HashMap::new(), functions: Vec::new() }
     }
 
-    /// The value, held within bounds: the fault `range` where it is outside. It is returned as it is if its type holds
-    /// no other values.
+    /// A call of the check function with the value: outside of the bounds it is the fault `range`. If the type has no values
+    /// outside, the value comes back as it is.
     pub(super) fn held(&mut self, value: Expr, (low, high, ty): (i128, i128, Type), at: Place) -> Expr {
         if ty.bounds().is_some_and(|(least, most)| low <= least && most <= high) {
             return value;
@@ -48,8 +51,9 @@ impl Checks {
         Expr { kind: ExprKind::Call(path, vec![Arg { name: None, output: false, value }]), at: place }
     }
 
-    /// `function INT_within_0_100(x : INT) : INT { INT_within_0_100 := MUX(SEL(x < 0 OR x > 100, 0, 2), x, 0) }`: a choice
-    /// that is not there is the fault `range` (SEMANTICS, section 5), in all forms of a chart.
+    /// Makes `function INT_within_0_100(x : INT) : INT { INT_within_0_100 := MUX(SEL(x < 0 OR x > 100, 0, 2), x, 0) }`. This MUX
+    /// has the inputs 0 and 1; to choose the input 2 is the fault `range` (SEMANTICS, section 5), in the engine and in the
+    /// equations.
     fn function(&mut self, low: i128, high: i128, ty: Type, at: Place) -> Name {
         let signed = |n: i128| n.to_string().replace('-', "m");
         let mut text = format!("{}_within_{}_{}", ty.name(), signed(low), signed(high));

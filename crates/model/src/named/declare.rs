@@ -1,19 +1,19 @@
-//! The table of declared types, and the declarations of variables of them.
+//! The types that a file declares with `type`, and the declarations of variables of these types.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
+use crate::composed::{DEEP, defined_twice, of_language, unknown_type};
 use crate::{
     Array, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span,
     Type, VarDecl, VarKind, codes, say,
 };
 
-/// How many types can stand for each other in a row.
-const DEEP: usize = 64;
 /// Most values of an enumeration.
 const MOST: usize = 1 << 12;
 
-/// The document in which each variable of a declared type has what the type says, and the problems of the types.
+/// Replaces the names of declared types by what the types are, in all declarations. Returns the problems of the types as
+/// well.
 pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
     let limited = |v: &VarDecl| v.limits.is_some();
     let concerned = |i: &Item| match i {
@@ -31,9 +31,11 @@ pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
     (Cow::Owned(Document { items, notes: document.notes.clone() }), types.problems)
 }
 
-/// The declared types, each with its own type in the place of a name.
+/// The declared types of a file.
 struct Types<'d> {
+    /// Each type, already without the names of other declared types.
     known: HashMap<&'d str, VarDecl>,
+    /// The constants of the file that are written numbers.
     constants: HashMap<&'d str, i128>,
     /// The structures and function blocks.
     composed: HashSet<&'d str>,
@@ -75,20 +77,17 @@ impl<'d> Types<'d> {
 
     /// Reports the name of a type that means something else already.
     fn is_free(&mut self, name: &Name, first: Option<&Name>, taken: &HashMap<&str, Span>) -> bool {
-        if let Some(problem) = crate::composed::of_language(name) {
+        if let Some(problem) = of_language(name) {
             self.problems.push(problem);
             return false;
         }
         let first = first.map(|n| n.at.0).or_else(|| taken.get(&*name.text).copied());
-        if let Some(first) = first {
-            let what = say!("`{}` is defined twice", name.text);
-            let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
-            self.problems.push(problem.related(first, say!("defined here first")));
-        }
+        self.problems.extend(first.map(|first| defined_twice(name, first)));
         first.is_none()
     }
 
-    /// Finds out about a type, after the one that it names.
+    /// Adds a type to the known ones. If it names another declared type, that one is added first; `way` are the types that
+    /// wait for this one.
     fn follow(
         &mut self,
         t: &'d VarDecl,
@@ -127,8 +126,9 @@ impl<'d> Types<'d> {
             return;
         }
         let mut own = t.clone();
-        if let Some(Limits::Values(values)) = t.limits.as_deref() {
-            self.enumeration(t, values);
+        let values = t.values();
+        if !values.is_empty() {
+            self.enumeration(values);
             let usual = values.first().map(|(first, _)| value_of(name, first));
             own.init = t.init.clone().map(|e| qualified(e, name, values)).or(usual);
             own.limits = Some(Box::new(Limits::Of(name.clone())));
@@ -139,7 +139,7 @@ impl<'d> Types<'d> {
         self.known.insert(&name.text, own);
     }
 
-    /// Reports a type that stands for one which the file does not declare.
+    /// Reports a `type` whose own type does not exist, as in `type A : Missing`.
     fn known_name(&mut self, t: &mut VarDecl) {
         let Some(of) = t.of.take_if(|of| !self.composed.contains(&*of.text)) else { return };
         if of.text.is_empty() {
@@ -148,23 +148,19 @@ impl<'d> Types<'d> {
         let mut names: Vec<&str> = Type::names().collect();
         names.extend(self.composed.iter().chain(self.known.keys()).copied());
         names.sort_unstable();
-        self.problems.push(crate::composed::unknown_type(&of, &names));
+        self.problems.push(unknown_type(&of, &names));
     }
 
     /// Checks the names and numbers of an enumeration.
-    fn enumeration(&mut self, t: &VarDecl, values: &[(Name, Option<Expr>)]) {
+    fn enumeration(&mut self, values: &[(Name, Option<Expr>)]) {
         let (mut names, mut numbers) = (HashMap::new(), HashMap::new());
         if let Some((name, _)) = values.get(MOST) {
             let what = say!("an enumeration has at most {MOST} values");
             return self.problems.push(Problem::new(&codes::TOO_LARGE, name.at.0, what));
         }
         for (name, number) in numbered(values) {
-            let twice = |what, first: Span| {
-                let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
-                problem.related(first, say!("defined here first"))
-            };
             if let Some(first) = names.insert(&*name.text, name.at.0).filter(|_| !name.text.is_empty()) {
-                self.problems.push(twice(say!("`{}` is defined twice", name.text), first));
+                self.problems.push(defined_twice(name, first));
             }
             let Some(number) = number else {
                 let at = name.at.0;
@@ -173,24 +169,21 @@ impl<'d> Types<'d> {
                 continue;
             };
             if let Some(first) = numbers.insert(number, name.at.0) {
-                self.problems.push(twice(say!("two values have the number {number}"), first));
+                let what = say!("two values have the number {number}");
+                let problem = Problem::new(&codes::DEFINED_TWICE, name.at.0, what);
+                self.problems.push(problem.related(first, say!("defined here first")));
             }
-        }
-        if let Some(array) = &t.array {
-            let what = say!("an enumeration has a name of its own");
-            let help = say!("write `type Mode : (Manual, Automatic)`, and `: Mode` here");
-            self.problems.push(Problem::new(&codes::EXPECTED, array.at.0, what).help(help));
         }
     }
 
-    /// The item with plain declarations; enumerations stay, other types go.
+    /// The item without names of declared types. Of the types themselves, only enumerations stay in the document: their
+    /// values are looked up later.
     fn item(&mut self, item: &Item) -> Option<Item> {
         let none = HashMap::new();
         Some(match item {
             Item::Type(t) => {
                 let name = &t.names.first()?.text;
-                let kept = matches!(t.limits.as_deref(), Some(Limits::Values(_)))
-                    && self.known.contains_key(&**name);
+                let kept = !t.values().is_empty() && self.known.contains_key(&**name);
                 return kept.then(|| item.clone());
             }
             Item::Var(v) => {
@@ -220,7 +213,8 @@ impl<'d> Types<'d> {
         })
     }
 
-    /// Puts the type of a declaration in the place of its name.
+    /// Replaces the name of a declared type in a declaration, or checks the bounds that are written there. `inner` are the
+    /// constants of the chart or function block round it.
     fn apply(&mut self, v: &mut VarDecl, inner: &HashMap<&str, i128>) {
         if let Some(ty) = v.of.as_ref().and_then(|of| self.known.get(&*of.text)) {
             let many = v.array.is_some();
@@ -236,7 +230,7 @@ impl<'d> Types<'d> {
             v.usual.clone_from(&ty.usual);
             match (&ty.array, &ty.init) {
                 (Some(_), None) => {}
-                // The values of one array of the type are those of each; the order of the indexes is theirs.
+                // The type has values for one array, and here are several arrays.
                 (Some(_), Some(_)) if many => {
                     let at = v.names.first().map_or(v.at.0, |n| n.at.0);
                     let what = say!("an array of arrays has values of its own");
@@ -264,7 +258,7 @@ impl<'d> Types<'d> {
         }
     }
 
-    /// The bounds as numbers.
+    /// The written bounds as numbers; None, with a problem, if they are no bounds of this type.
     fn range(
         &mut self,
         least: &Expr,
@@ -300,7 +294,8 @@ impl<'d> Types<'d> {
     }
 }
 
-/// The values with their numbers: without one, the next after the value before. None where there is no such number.
+/// The values of an enumeration with their numbers. A value without a written number has one more than the value before it,
+/// the first one 0. None stands for a number that no INT can have.
 pub fn numbered(values: &[(Name, Option<Expr>)]) -> Vec<(&Name, Option<i128>)> {
     let fits = |n: &i128| Type::Int.bounds().is_some_and(|(least, most)| (least..=most).contains(n));
     let mut next = Some(0_i128);

@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use super::checks::Checks;
-use super::scopes::{Found, Holds, Place, Scopes, Var};
+use super::scopes::{Admits, Around, Found, Scopes, Var};
 use crate::{
     Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Problem, Said,
     Span, StandardFunction, Type, VarDecl, VarKind, codes, say,
@@ -12,10 +12,10 @@ use crate::{
 /// Most values that a message lists.
 const SHOWN: usize = 20;
 
-/// The document with numbers in the place of values of enumerations, and with checks of what variables with bounds
-/// receive; with the problems found.
+/// Replaces values of enumerations by their numbers, and puts checks into the assignments to variables with bounds. Returns
+/// the problems found as well.
 pub fn held(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
-    match Held::of(document) {
+    match Checker::of(document) {
         Some(held) => {
             let (document, problems) = held.document(document);
             (Cow::Owned(document), problems)
@@ -24,25 +24,25 @@ pub fn held(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
     }
 }
 
-/// The enumerations and the variables with bounds of a document.
-pub struct Held<'d> {
+/// Checks and changes the expressions and statements of one document.
+pub struct Checker<'d> {
     pub(super) scopes: Scopes<'d>,
     pub(super) checks: Checks,
     pub(super) problems: Vec<Problem>,
 }
 
-impl<'d> Held<'d> {
+impl<'d> Checker<'d> {
     /// None if a document that [`super::declared`] gave has no enumerations and no bounds.
-    pub fn of(document: &'d Document) -> Option<Held<'d>> {
+    pub fn of(document: &'d Document) -> Option<Checker<'d>> {
         let concerned = |i: &Item| match i {
             Item::Type(_) => true,
             Item::Var(v) => v.limits.is_some(),
             Item::Chart(c) => c.vars().any(|v| v.limits.is_some()),
             _ => false,
         };
-        document.items.iter().any(concerned).then(|| Held {
+        document.items.iter().any(concerned).then(|| Checker {
             scopes: Scopes::of(document),
-            checks: Checks::of(document),
+            checks: Checks::default(),
             problems: Vec::new(),
         })
     }
@@ -51,11 +51,12 @@ impl<'d> Held<'d> {
     pub fn query(&mut self, e: &Expr) -> (Expr, Vec<Problem>) {
         let mut e = e.clone();
         self.problems.clear();
-        self.typed(&mut e, Place { chart: None, locals: &[] });
+        self.typed(&mut e, Around { chart: None, locals: &[] });
         (e, std::mem::take(&mut self.problems))
     }
 
     fn document(mut self, document: &Document) -> (Document, Vec<Problem>) {
+        self.checks = Checks::of(document);
         let mut items = Vec::new();
         for item in &document.items {
             let mut own = item.clone();
@@ -82,12 +83,9 @@ impl<'d> Held<'d> {
 
     /// The values of a declaration.
     fn declaration(&mut self, v: &mut VarDecl, chart: Option<&str>) {
-        let place = Place { chart, locals: &[] };
+        let around = Around { chart, locals: &[] };
+        let range = v.range();
         let limits = v.limits.take();
-        let range = match limits.as_deref() {
-            Some(Limits::Range(least, most)) => least.kind.whole().zip(most.kind.whole()),
-            _ => None,
-        };
         let wanted = match limits.as_deref() {
             Some(Limits::Of(name)) => Some(&*name.text),
             _ => None,
@@ -106,9 +104,9 @@ impl<'d> Held<'d> {
         for e in values {
             match &mut e.kind {
                 ExprKind::List(list) => {
-                    list.iter_mut().for_each(|(_, e)| self.value_of(e, wanted, range, place));
+                    list.iter_mut().for_each(|(_, e)| self.value_of(e, wanted, range, around));
                 }
-                _ => self.value_of(e, wanted, range, place),
+                _ => self.value_of(e, wanted, range, around),
             }
         }
         v.limits = limits;
@@ -119,11 +117,11 @@ impl<'d> Held<'d> {
         e: &mut Expr,
         wanted: Option<&str>,
         range: Option<(i128, i128)>,
-        place: Place<'_>,
+        around: Around<'_>,
     ) {
-        self.expect(e, wanted, place);
+        self.expect(e, wanted, around);
         let Some((low, high)) = range.filter(|_| e.kind != ExprKind::Bad) else { return };
-        match self.number(e, place) {
+        match self.number(e, around) {
             Some(n) => self.within(n, (low, high), e.at.0),
             None => {
                 let what = say!(
@@ -136,9 +134,9 @@ impl<'d> Held<'d> {
     }
 
     /// The number of a constant.
-    fn number(&self, e: &Expr, place: Place<'_>) -> Option<i128> {
+    fn number(&self, e: &Expr, around: Around<'_>) -> Option<i128> {
         match &e.kind {
-            ExprKind::Path(path) => match self.scopes.find(path, place) {
+            ExprKind::Path(path) => match self.scopes.find(path, around) {
                 Found::Var(var, false) => var.number,
                 _ => None,
             },
@@ -153,19 +151,19 @@ impl<'d> Held<'d> {
         }
     }
 
-    /// An expression of which no value of an enumeration may come.
-    pub(super) fn plain(&mut self, e: &mut Expr, place: Place<'_>) {
-        self.expect(e, None, place);
+    /// Changes an expression whose value must not be one of an enumeration.
+    pub(super) fn plain(&mut self, e: &mut Expr, around: Around<'_>) {
+        self.expect(e, None, around);
     }
 
-    /// An expression whose value is one of an enumeration, or none of any.
-    pub(super) fn expect(&mut self, e: &mut Expr, wanted: Option<&str>, place: Place<'_>) {
-        let found = self.typed(e, place);
+    /// Changes an expression whose value must be one of the enumeration `wanted`; if that is None, of no enumeration.
+    pub(super) fn expect(&mut self, e: &mut Expr, wanted: Option<&str>, around: Around<'_>) {
+        let found = self.typed(e, around);
         self.agree(found, wanted, e);
     }
 
-    /// Reports an expression of another enumeration. It counts as one that could not be read afterwards, so that
-    /// nothing else is told of it.
+    /// Reports an expression whose value is not of the wanted enumeration. The expression becomes [`ExprKind::Bad`], so that
+    /// later passes report nothing about it.
     fn agree(&mut self, found: Option<&str>, wanted: Option<&str>, e: &mut Expr) {
         if e.kind == ExprKind::Bad {
             return;
@@ -196,25 +194,25 @@ impl<'d> Held<'d> {
         say!("its values are {}", Said::foreign(names.join(", ")))
     }
 
-    /// Replaces the values in an expression; the enumeration of its own value.
-    pub(super) fn typed(&mut self, e: &mut Expr, place: Place<'_>) -> Option<&'d str> {
+    /// Changes an expression, and returns the enumeration that its value is of.
+    pub(super) fn typed(&mut self, e: &mut Expr, around: Around<'_>) -> Option<&'d str> {
         let at = e.at;
         match &mut e.kind {
             ExprKind::Literal(_) | ExprKind::Bad => None,
             ExprKind::Direct(text) => match self.scopes.at_address(text) {
-                Some((Var { holds: Holds::Values(ty), .. }, _)) => Some(ty),
+                Some((Var { admits: Admits::Values(ty), .. }, _)) => Some(ty),
                 _ => None,
             },
             ExprKind::Path(path) => {
-                let found = self.scopes.find(path, place);
+                let found = self.scopes.find(path, around);
                 if let Some(problem) = self.no_value(&found, path, at.0) {
                     self.problems.push(problem);
                     e.kind = ExprKind::Bad;
                     return None;
                 }
                 match found {
-                    // A bit of a value counts as one, so that it can stand nowhere.
-                    Found::Var(Var { holds: Holds::Values(ty), .. }, _) => Some(ty),
+                    // A bit of a variable of an enumeration is refused too: as a value, it fits where no bit fits.
+                    Found::Var(Var { admits: Admits::Values(ty), .. }, _) => Some(ty),
                     Found::Value(ty, number) => {
                         e.kind = ExprKind::Literal(Literal::Int(number, None));
                         Some(ty)
@@ -223,46 +221,46 @@ impl<'d> Held<'d> {
                 }
             }
             ExprKind::Element(path, index, _) => {
-                index.iter_mut().for_each(|e| self.plain(e, place));
-                match self.scopes.find(path, place) {
-                    Found::Var(Var { holds: Holds::Values(ty), .. }, _) => Some(ty),
+                index.iter_mut().for_each(|e| self.plain(e, around));
+                match self.scopes.find(path, around) {
+                    Found::Var(Var { admits: Admits::Values(ty), .. }, _) => Some(ty),
                     _ => None,
                 }
             }
             ExprKind::Unary(_, a) => {
-                self.plain(a, place);
+                self.plain(a, around);
                 None
             }
             ExprKind::Binary(BinaryOp::Eq | BinaryOp::Ne, a, b) => {
-                self.same([&mut **a, &mut **b].into_iter(), place);
+                self.same([&mut **a, &mut **b].into_iter(), around);
                 None
             }
             ExprKind::Binary(_, a, b) => {
-                self.plain(a, place);
-                self.plain(b, place);
+                self.plain(a, around);
+                self.plain(b, around);
                 None
             }
             ExprKind::Timer { t1, e, t2 } => {
-                self.plain(t1, place);
-                self.plain(e, place);
-                t2.iter_mut().for_each(|t| self.plain(t, place));
+                self.plain(t1, around);
+                self.plain(e, around);
+                t2.iter_mut().for_each(|t| self.plain(t, around));
                 None
             }
             ExprKind::List(values) => {
-                values.iter_mut().for_each(|(_, e)| self.plain(e, place));
+                values.iter_mut().for_each(|(_, e)| self.plain(e, around));
                 None
             }
             ExprKind::Call(path, args) => {
-                if let Some(number) = self.number_of(path, args, place) {
+                if let Some(number) = self.number_of(path, args, around) {
                     *e = number;
                     return None;
                 }
-                self.call(path, args, place)
+                self.call(path, args, around)
             }
         }
     }
 
-    /// The problem of a name that is no value of one enumeration, though it is meant as such.
+    /// The problem of a value that two enumerations have, or that the named enumeration does not have.
     fn no_value(&self, found: &Found<'_>, path: &Path, at: Span) -> Option<Problem> {
         match found {
             Found::Both(one, other) => {
@@ -286,17 +284,17 @@ impl<'d> Held<'d> {
         }
     }
 
-    /// Several expressions with values of one enumeration, or of none; that enumeration.
+    /// Changes expressions that must all be of one enumeration, or all of none; returns the enumeration.
     fn same<'e>(
         &mut self,
         mut list: impl Iterator<Item = &'e mut Expr>,
-        place: Place<'_>,
+        around: Around<'_>,
     ) -> Option<&'d str> {
         let first = list.next()?;
-        let found = self.typed(first, place);
+        let found = self.typed(first, around);
         let mut wanted = found;
         for e in list {
-            let next = self.typed(e, place);
+            let next = self.typed(e, around);
             match wanted {
                 // The first one is a number beside a value.
                 None if next.is_some() => {
@@ -310,61 +308,58 @@ impl<'d> Held<'d> {
     }
 
     /// `Mode_TO_INT(mode)`: the number of a value.
-    fn number_of(&mut self, path: &Path, args: &mut [Arg], place: Place<'_>) -> Option<Expr> {
+    fn number_of(&mut self, path: &Path, args: &mut [Arg], around: Around<'_>) -> Option<Expr> {
         let [name] = path.names.as_slice() else { return None };
         let ty = name.text.strip_suffix("_TO_INT")?;
         let (ty, _) = self.scopes.enumerations.get_key_value(ty)?;
         let (ty, [only]) = (*ty, args) else { return None };
-        self.expect(&mut only.value, Some(ty), place);
+        self.expect(&mut only.value, Some(ty), around);
         Some(only.value.clone())
     }
 
-    fn call(&mut self, path: &Path, args: &mut [Arg], place: Place<'_>) -> Option<&'d str> {
+    fn call(&mut self, path: &Path, args: &mut [Arg], around: Around<'_>) -> Option<&'d str> {
         let function = match path.names.as_slice() {
             [name] => StandardFunction::named(&name.text),
             _ => None,
         };
-        let chosen = |arg: &Arg| {
-            arg.name
-                .as_ref()
-                .is_some_and(|n| n.text.eq_ignore_ascii_case("G") || n.text.eq_ignore_ascii_case("K"))
-        };
         use StandardFunction as F;
         match function {
             Some(F::Move | F::Operator(BinaryOp::Eq | BinaryOp::Ne)) => {
-                let ty = self.same(args.iter_mut().map(|a| &mut a.value), place);
+                let ty = self.same(args.iter_mut().map(|a| &mut a.value), around);
                 ty.filter(|_| function == Some(F::Move))
             }
-            Some(F::Sel | F::Mux) => {
-                let choice = args.iter().position(chosen).unwrap_or(0);
+            Some(f @ (F::Sel | F::Mux)) => {
+                // The first input chooses among the others; with names it can stand anywhere.
+                let chooses = |a: &Arg| a.name.as_ref().is_some_and(|n| f.row().place(&n.text) == Some(0));
+                let choice = args.iter().position(chooses).unwrap_or(0);
                 if let Some(arg) = args.get_mut(choice) {
-                    self.plain(&mut arg.value, place);
+                    self.plain(&mut arg.value, around);
                 }
                 let others = args.iter_mut().enumerate().filter(|(n, _)| *n != choice);
-                self.same(others.map(|(_, a)| &mut a.value), place)
+                self.same(others.map(|(_, a)| &mut a.value), around)
             }
             _ => {
-                args.iter_mut().for_each(|a| self.plain(&mut a.value, place));
+                args.iter_mut().for_each(|a| self.plain(&mut a.value, around));
                 None
             }
         }
     }
 
-    /// The value of an assignment, as the variable can hold it.
-    pub(super) fn assigned(&mut self, target: &mut Expr, value: &mut Expr, place: Place<'_>) {
-        let (var, part) = self.target(target, place);
-        let holds = var.map_or(Holds::All, |v| v.holds);
-        match holds {
-            Holds::All => self.plain(value, place),
-            Holds::Values(_) | Holds::Range(..) if part => {
-                self.plain(value, place);
+    /// Changes the value of an assignment, so that the target gets only values that it can have.
+    pub(super) fn assigned(&mut self, target: &mut Expr, value: &mut Expr, around: Around<'_>) {
+        let (var, part) = self.target(target, around);
+        let admits = var.map_or(Admits::All, |v| v.admits);
+        match admits {
+            Admits::All => self.plain(value, around),
+            Admits::Values(_) | Admits::Range(..) if part => {
+                self.plain(value, around);
                 self.only_assigned(target);
             }
-            Holds::Values(ty) => self.expect(value, Some(ty), place),
-            Holds::Range(low, high, ty) => {
-                self.plain(value, place);
+            Admits::Values(ty) => self.expect(value, Some(ty), around),
+            Admits::Range(low, high, ty) => {
+                self.plain(value, around);
                 let whole = var.is_some_and(|v| v.array) && matches!(target.kind, ExprKind::Path(_));
-                self.bounded(value, (low, high, ty), whole, place);
+                self.bounded(value, (low, high, ty), whole, around);
             }
         }
     }
@@ -374,21 +369,21 @@ impl<'d> Held<'d> {
         value: &mut Expr,
         (low, high, ty): (i128, i128, Type),
         whole: bool,
-        place: Place<'_>,
+        around: Around<'_>,
     ) {
-        if let Some(n) = self.number(value, place) {
+        if let Some(n) = self.number(value, around) {
             return self.within(n, (low, high), value.at.0);
         }
-        if self.is_limited(value, (low, high), place) {
+        if self.is_limited(value, (low, high), around) {
             return;
         }
         let source = match &value.kind {
-            ExprKind::Path(path) | ExprKind::Call(path, _) if whole => self.scopes.find(path, place),
-            ExprKind::Path(path) => self.scopes.find(path, place),
-            ExprKind::Element(path, _, None) => self.scopes.find(path, place),
+            ExprKind::Path(path) | ExprKind::Call(path, _) if whole => self.scopes.find(path, around),
+            ExprKind::Path(path) => self.scopes.find(path, around),
+            ExprKind::Element(path, _, None) => self.scopes.find(path, around),
             _ => Found::Other,
         };
-        if let Found::Var(Var { holds: Holds::Range(least, most, _), .. }, false) = source
+        if let Found::Var(Var { admits: Admits::Range(least, most, _), .. }, false) = source
             && low <= least
             && most <= high
         {
@@ -405,7 +400,7 @@ impl<'d> Held<'d> {
     }
 
     /// True for `LIMIT(0, x, 100)` with bounds that are known and fit.
-    fn is_limited(&self, value: &Expr, (low, high): (i128, i128), place: Place<'_>) -> bool {
+    fn is_limited(&self, value: &Expr, (low, high): (i128, i128), around: Around<'_>) -> bool {
         let ExprKind::Call(path, args) = &value.kind else { return false };
         let ([name], [least, _, most]) = (path.names.as_slice(), args.as_slice()) else { return false };
         if StandardFunction::named(&name.text) != Some(StandardFunction::Limit)
@@ -413,16 +408,16 @@ impl<'d> Held<'d> {
         {
             return false;
         }
-        let bounds = self.number(&least.value, place).zip(self.number(&most.value, place));
+        let bounds = self.number(&least.value, around).zip(self.number(&most.value, around));
         bounds.is_some_and(|(least, most)| low <= least && least <= most && most <= high)
     }
 
-    /// The variable that a target is, and whether it is only a bit or member of it.
-    fn target(&mut self, target: &mut Expr, place: Place<'_>) -> (Option<Var<'d>>, bool) {
+    /// The variable that a target names; the flag is true if the target is only a bit or a member of it.
+    fn target(&mut self, target: &mut Expr, around: Around<'_>) -> (Option<Var<'d>>, bool) {
         let (path, bit) = match &mut target.kind {
             ExprKind::Path(path) => (&*path, false),
             ExprKind::Element(path, index, bit) => {
-                index.iter_mut().for_each(|e| self.plain(e, place));
+                index.iter_mut().for_each(|e| self.plain(e, around));
                 (&**path, bit.is_some())
             }
             ExprKind::Direct(text) => {
@@ -430,15 +425,16 @@ impl<'d> Held<'d> {
             }
             _ => return (None, false),
         };
-        match self.scopes.find(path, place) {
+        match self.scopes.find(path, around) {
             Found::Var(var, part) => (Some(var), part || bit),
             _ => (None, false),
         }
     }
 
-    /// A target that something else than an assignment writes.
-    pub(super) fn written(&mut self, target: &mut Expr, place: Place<'_>) {
-        if let (Some(Var { holds: Holds::Values(_) | Holds::Range(..), .. }), _) = self.target(target, place)
+    /// Reports a target that must be written by assignments only, where something else writes it.
+    pub(super) fn written(&mut self, target: &mut Expr, around: Around<'_>) {
+        if let (Some(Var { admits: Admits::Values(_) | Admits::Range(..), .. }), _) =
+            self.target(target, around)
         {
             self.only_assigned(target);
         }

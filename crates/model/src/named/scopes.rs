@@ -1,13 +1,13 @@
-//! The names of a document and what they hold: enumerations, and variables of them or with bounds.
+//! The meaning of names for the checks: enumerations and their values, and the values that each variable can have.
 
 use std::collections::HashMap;
 
 use super::declare::numbered;
 use crate::{ChartItem, Document, Item, Limits, Name, Path, Type, VarDecl, VarKind, normal_address};
 
-/// The values that a variable can hold.
+/// The values that a variable can have.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Holds<'d> {
+pub(super) enum Admits<'d> {
     /// All values of its type.
     All,
     /// The values of this enumeration.
@@ -19,7 +19,7 @@ pub(super) enum Holds<'d> {
 /// A variable.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Var<'d> {
-    pub(super) holds: Holds<'d>,
+    pub(super) admits: Admits<'d>,
     pub(super) array: bool,
     /// Of a constant with a written number, that.
     pub(super) number: Option<i128>,
@@ -27,7 +27,7 @@ pub(super) struct Var<'d> {
 
 /// The meaning of a name.
 pub(super) enum Found<'d> {
-    /// A variable; behind it may stand a bit or a member.
+    /// A variable. The flag is true if the path goes on behind it, to a bit or a member.
     Var(Var<'d>, bool),
     /// A value of an enumeration, and its number.
     Value(&'d str, i128),
@@ -41,9 +41,9 @@ pub(super) enum Found<'d> {
 
 /// Where an expression stands.
 #[derive(Clone, Copy)]
-pub(super) struct Place<'e> {
+pub(super) struct Around<'e> {
     pub(super) chart: Option<&'e str>,
-    /// Names that hide those of the chart and of the file, and have no limits.
+    /// The local variables. They hide other names, and they are plain: none is of a declared type.
     pub(super) locals: &'e [Box<str>],
 }
 
@@ -94,7 +94,7 @@ impl<'d> Scopes<'d> {
     fn place(&mut self, v: &'d VarDecl) {
         let address = v.address.as_ref().filter(|a| v.limits.is_some() && a.text.starts_with('%'));
         if let Some(address) = address {
-            let var = Var { holds: holds(v), array: false, number: None };
+            let var = Var { admits: admits(v), array: false, number: None };
             self.addresses.entry(normal_address(&address.text)).or_insert(var);
         }
     }
@@ -106,12 +106,10 @@ impl<'d> Scopes<'d> {
     }
 
     fn enumeration(&mut self, t: &'d VarDecl) {
-        let (Some(name), Some(Limits::Values(values))) = (t.names.first(), t.limits.as_deref()) else {
-            return;
-        };
+        let Some(name) = t.names.first() else { return };
         // A value whose number is wrong has been reported.
         let all: Vec<(&Name, i128)> =
-            numbered(values).into_iter().map(|(name, number)| (name, number.unwrap_or(0))).collect();
+            numbered(t.values()).into_iter().map(|(name, number)| (name, number.unwrap_or(0))).collect();
         for (value, number) in &all {
             let of = self.values.entry(&*value.text).or_default();
             if of.iter().all(|(before, _)| **before != *name.text) {
@@ -122,32 +120,32 @@ impl<'d> Scopes<'d> {
     }
 
     /// The meaning of a path.
-    pub(super) fn find(&self, path: &Path, place: Place<'_>) -> Found<'d> {
-        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
-        let Some(first) = names.first() else { return Found::Other };
-        if place.locals.iter().any(|l| **l == **first) {
+    pub(super) fn find(&self, path: &Path, around: Around<'_>) -> Found<'d> {
+        let names = path.names.as_slice();
+        let Some(first) = names.first().map(|n| &*n.text) else { return Found::Other };
+        if around.locals.iter().any(|l| **l == *first) {
             return Found::Other;
         }
-        let own = place.chart.and_then(|c| self.charts.get(c)?.get(first)).or_else(|| self.file.get(first));
+        let own = around.chart.and_then(|c| self.charts.get(c)?.get(first)).or_else(|| self.file.get(first));
         if let Some(var) = own {
             return Found::Var(*var, names.len() > 1);
         }
-        match names[..] {
-            [value] => match self.values.get(value).map(Vec::as_slice) {
+        match names {
+            [value] => match self.values.get(&*value.text).map(Vec::as_slice) {
                 Some([(ty, number)]) => Found::Value(ty, *number),
                 Some([(one, _), (other, _), ..]) => Found::Both(one, other),
                 Some([]) | None => Found::Other,
             },
             [ty, value, ..] => {
-                if let Some((ty, values)) = self.enumerations.get_key_value(ty) {
-                    let number = values.iter().find(|(name, _)| *name.text == *value).map(|(_, n)| *n);
+                if let Some((ty, values)) = self.enumerations.get_key_value(&*ty.text) {
+                    let number = values.iter().find(|(name, _)| name.text == value.text).map(|(_, n)| *n);
                     return match number {
                         Some(number) if names.len() == 2 => Found::Value(ty, number),
                         Some(_) => Found::Other,
                         None => Found::NoValue(ty),
                     };
                 }
-                match self.charts.get(ty).and_then(|vars| vars.get(value)) {
+                match self.charts.get(&*ty.text).and_then(|vars| vars.get(&*value.text)) {
                     Some(var) => Found::Var(*var, names.len() > 2),
                     None => Found::Other,
                 }
@@ -164,20 +162,17 @@ impl<'d> Scopes<'d> {
 
 fn declare<'d>(vars: &mut Vars<'d>, v: &'d VarDecl) {
     let number = v.init.as_ref().filter(|_| v.kind == VarKind::Const).and_then(|e| e.kind.whole());
-    let var = Var { holds: holds(v), array: v.array.is_some(), number };
+    let var = Var { admits: admits(v), array: v.array.is_some(), number };
     for name in &v.names {
         vars.entry(&*name.text).or_insert(var);
     }
 }
 
-/// The values that the variables of a declaration can hold.
-pub(super) fn holds(v: &VarDecl) -> Holds<'_> {
-    match v.limits.as_deref() {
-        Some(Limits::Of(name)) => Holds::Values(&name.text),
-        Some(Limits::Range(least, most)) => match (least.kind.whole(), most.kind.whole()) {
-            (Some(low), Some(high)) => Holds::Range(low, high, v.ty),
-            _ => Holds::All,
-        },
-        Some(Limits::Values(_)) | None => Holds::All,
+/// The values that the variables of a declaration can have.
+pub(super) fn admits(v: &VarDecl) -> Admits<'_> {
+    match (v.limits.as_deref(), v.range()) {
+        (Some(Limits::Of(name)), _) => Admits::Values(&name.text),
+        (_, Some((least, most))) => Admits::Range(least, most, v.ty),
+        _ => Admits::All,
     }
 }

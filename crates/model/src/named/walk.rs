@@ -1,13 +1,13 @@
 //! The walk through items and statements, in which values are replaced and assignments checked.
 
-use super::held::Held;
-use super::scopes::Place;
+use super::held::Checker;
+use super::scopes::Around;
 use crate::{
     Action, ActionKind, Block, Body, CaseArm, ChartItem, Expr, ExprKind, Item, Name, Path, Stmt, StmtKind,
     Target, Work,
 };
 
-impl Held<'_> {
+impl Checker<'_> {
     /// An item that is neither a variable nor a chart.
     pub(super) fn item(&mut self, item: &mut Item) {
         match item {
@@ -20,8 +20,8 @@ impl Held<'_> {
                 self.block(&mut f.body, None, &own);
             }
             Item::Prove(p) => {
-                let place = Place { chart: None, locals: &[] };
-                p.kind.claims_mut().into_iter().for_each(|e| self.plain(e, place));
+                let around = Around { chart: None, locals: &[] };
+                p.kind.claims_mut().into_iter().for_each(|e| self.plain(e, around));
             }
             _ => {}
         }
@@ -29,11 +29,11 @@ impl Held<'_> {
 
     /// An item of a chart that is no variable.
     pub(super) fn chart_item(&mut self, item: &mut ChartItem, chart: &str) {
-        let place = Place { chart: Some(chart), locals: &[] };
+        let around = Around { chart: Some(chart), locals: &[] };
         match item {
-            ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, place)),
+            ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, around)),
             ChartItem::Transition(t) => {
-                self.plain(&mut t.receptivity, place);
+                self.plain(&mut t.receptivity, around);
                 t.on_clearing.iter_mut().for_each(|b| self.block(b, Some(chart), &[]));
             }
             ChartItem::Pre(body, _) | ChartItem::Post(body, _) => self.body(body, Some(chart)),
@@ -43,37 +43,37 @@ impl Held<'_> {
         }
     }
 
-    fn action(&mut self, action: &mut Action, place: Place<'_>) {
+    fn action(&mut self, action: &mut Action, around: Around<'_>) {
         match &mut action.kind {
             ActionKind::Qualified { time, target, condition, .. } => {
-                time.iter_mut().chain(condition).for_each(|e| self.plain(e, place));
+                time.iter_mut().chain(condition).for_each(|e| self.plain(e, around));
                 match target {
-                    Target::Work(work) => self.work(work, place),
-                    Target::Element(e) => self.written(e, place),
+                    Target::Work(work) => self.work(work, around),
+                    Target::Element(e) => self.written(e, around),
                     Target::Path(path) => {
                         let mut e =
                             Expr { kind: ExprKind::Path(Path { names: path.names.clone() }), at: action.at };
-                        self.written(&mut e, place);
+                        self.written(&mut e, around);
                     }
                     Target::Direct(..) => {}
                 }
             }
             ActionKind::OnEvent { event, work } => {
-                self.plain(event, place);
-                self.work(work, place);
+                self.plain(event, around);
+                self.work(work, around);
             }
             ActionKind::EachScan { work, condition } => {
-                self.work(work, place);
-                condition.iter_mut().for_each(|e| self.plain(e, place));
+                self.work(work, around);
+                condition.iter_mut().for_each(|e| self.plain(e, around));
             }
             ActionKind::Order(_) | ActionKind::Comment(_) => {}
         }
     }
 
-    fn work(&mut self, work: &mut Work, place: Place<'_>) {
+    fn work(&mut self, work: &mut Work, around: Around<'_>) {
         match work {
-            Work::Block(block) => self.block(block, place.chart, &[]),
-            Work::Single(s) => self.statement(s, place),
+            Work::Block(block) => self.block(block, around.chart, &[]),
+            Work::Single(s) => self.statement(s, around),
         }
     }
 
@@ -94,64 +94,64 @@ impl Held<'_> {
     fn block(&mut self, block: &mut Block, chart: Option<&str>, hidden: &[Box<str>]) {
         let own = block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone());
         let locals: Vec<Box<str>> = hidden.iter().cloned().chain(own).collect();
-        let place = Place { chart, locals: &locals };
-        block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.plain(e, place));
-        self.statements(&mut block.statements, place);
+        let around = Around { chart, locals: &locals };
+        block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.plain(e, around));
+        self.statements(&mut block.statements, around);
     }
 
-    fn statements(&mut self, list: &mut [Stmt], place: Place<'_>) {
-        list.iter_mut().for_each(|s| self.statement(s, place));
+    fn statements(&mut self, list: &mut [Stmt], around: Around<'_>) {
+        list.iter_mut().for_each(|s| self.statement(s, around));
     }
 
-    fn statement(&mut self, s: &mut Stmt, place: Place<'_>) {
+    fn statement(&mut self, s: &mut Stmt, around: Around<'_>) {
         match &mut s.kind {
-            StmtKind::Assign { target, value } => self.assigned(target, value, place),
+            StmtKind::Assign { target, value } => self.assigned(target, value, around),
             StmtKind::Call(_, args) => {
                 for arg in args {
                     if arg.output {
-                        self.written(&mut arg.value, place);
+                        self.written(&mut arg.value, around);
                     } else {
-                        self.plain(&mut arg.value, place);
+                        self.plain(&mut arg.value, around);
                     }
                 }
             }
             StmtKind::If(arms, otherwise) => {
                 for (condition, body) in arms {
-                    self.plain(condition, place);
-                    self.statements(body, place);
+                    self.plain(condition, around);
+                    self.statements(body, around);
                 }
-                self.statements(otherwise, place);
+                self.statements(otherwise, around);
             }
             StmtKind::Case(selector, arms, otherwise) => {
-                self.case(selector, arms, place);
-                self.statements(otherwise, place);
+                self.case(selector, arms, around);
+                self.statements(otherwise, around);
             }
             StmtKind::For { var, from, to, by, body } => {
-                self.loop_variable(var, place);
-                [from, to].into_iter().chain(by).for_each(|e| self.plain(e, place));
-                self.statements(body, place);
+                self.loop_variable(var, around);
+                [from, to].into_iter().chain(by).for_each(|e| self.plain(e, around));
+                self.statements(body, around);
             }
             StmtKind::While(condition, body) | StmtKind::Repeat(body, condition) => {
-                self.plain(condition, place);
-                self.statements(body, place);
+                self.plain(condition, around);
+                self.statements(body, around);
             }
             StmtKind::Exit | StmtKind::Return => {}
         }
     }
 
-    fn case(&mut self, selector: &mut Expr, arms: &mut [CaseArm], place: Place<'_>) {
-        let ty = self.typed(selector, place);
+    fn case(&mut self, selector: &mut Expr, arms: &mut [CaseArm], around: Around<'_>) {
+        let ty = self.typed(selector, around);
         for arm in arms {
             for (least, most) in &mut arm.labels {
-                self.expect(least, ty, place);
-                most.iter_mut().for_each(|e| self.expect(e, ty, place));
+                self.expect(least, ty, around);
+                most.iter_mut().for_each(|e| self.expect(e, ty, around));
             }
-            self.statements(&mut arm.body, place);
+            self.statements(&mut arm.body, around);
         }
     }
 
-    fn loop_variable(&mut self, var: &Name, place: Place<'_>) {
+    fn loop_variable(&mut self, var: &Name, around: Around<'_>) {
         let path = Path { names: vec![var.clone()] };
-        self.written(&mut Expr { kind: ExprKind::Path(path), at: var.at }, place);
+        self.written(&mut Expr { kind: ExprKind::Path(path), at: var.at }, around);
     }
 }

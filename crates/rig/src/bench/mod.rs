@@ -40,7 +40,7 @@ pub struct Item {
     pub name: String,
     /// How its words are to be read.
     pub kind: Kind,
-    /// Its values, where they are less than all of its type.
+    /// The values that it can have, if it is of an enumeration or has bounds.
     pub held: Option<Arc<Held>>,
     /// Its use.
     pub role: Role,

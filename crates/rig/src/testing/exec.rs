@@ -341,9 +341,7 @@ impl<'b> Exec<'b, '_, '_> {
         if item.kind == Kind::Text {
             return Ok(Value::Text(read_text(words, word as u32).into()));
         }
-        let held =
-            |value: &Value| item.held.as_ref().is_none_or(|h| h.admits(value.number(item.kind) as i128));
-        convert(word, answer.ty, item).filter(held).ok_or_else(|| {
+        convert(word, answer.ty, item).filter(|value| item.admits(value)).ok_or_else(|| {
             self.failed(
                 say!("`{}` ({}) cannot hold this value", item.name, Said::foreign(item.declared())),
                 None,

@@ -136,10 +136,15 @@ impl Parser<'_> {
 
     /// Addresses, channels and values of a stop belong to variables, not to their types.
     fn plain_member(&mut self, member: &VarDecl, retained: bool) {
-        let at = member.address.as_ref().map(|a| a.at.0).or(member.safe.as_ref().map(|s| s.at.0));
-        let at = at.or((member.inverted || member.retain && !retained).then_some(member.at.0));
+        let what = say!("a member has a type, a value and a comment; all else stands at the variable");
+        self.type_alone(member, retained, what);
+    }
+
+    /// Reports the clauses of a declaration that only a variable has; `what` tells what may stand there.
+    pub(super) fn type_alone(&mut self, declared: &VarDecl, retained: bool, what: Said) {
+        let at = declared.address.as_ref().map(|a| a.at.0).or(declared.safe.as_ref().map(|s| s.at.0));
+        let at = at.or((declared.inverted || declared.retain && !retained).then_some(declared.at.0));
         if let Some(at) = at {
-            let what = say!("a member has a type, a value and a comment; all else stands at the variable");
             self.problem_help(&codes::EXPECTED, at, what, say!("leave it out here"));
         }
     }

@@ -26,15 +26,15 @@ impl Parser<'_> {
                 say!("write a second `type` for `{}`", second.text),
             );
         }
-        let at = made.address.as_ref().map(|a| a.at.0).or(made.safe.as_ref().map(|s| s.at.0));
-        if let Some(at) = at.or((made.inverted || made.retain).then_some(made.at.0)) {
-            let what = say!("a type has values and a comment; all else stands at the variable");
-            self.problem_help(&codes::EXPECTED, at, what, say!("leave it out here"));
+        let what = say!("a type has values and a comment; all else stands at the variable");
+        self.type_alone(&made, false, what);
+        if made.array.is_some() {
+            self.no_values(&made);
         }
         made
     }
 
-    /// `: (Manual, Automatic := 5)`, or what stands so behind `OF`.
+    /// `: (Manual, Automatic := 5)`; behind `OF` (`element`) it begins with the bracket.
     pub(super) fn enumeration(&mut self, element: bool) -> Option<Limits> {
         let open = if element { self.cur } else { self.peek() };
         if open.kind != Tok::LParen || open.newline || !element && !self.at(Tok::Colon) {
@@ -83,10 +83,10 @@ impl Parser<'_> {
         Some(Limits::Range(least, most))
     }
 
-    /// An enumeration has a name, so that its values have one meaning in the file.
+    /// Reports values of an enumeration in a declaration that is not `type Name : (…)`: they would have no type with a name.
     pub(super) fn no_values(&mut self, v: &VarDecl) {
-        if let Some(Limits::Values(values)) = v.limits.as_deref() {
-            let first = values.first().map_or(v.at.0, |(name, _)| name.at.0);
+        if let Some((first, _)) = v.values().first() {
+            let first = first.at.0;
             let what = say!("an enumeration has a name of its own");
             let help = say!("write `type Mode : (Manual, Automatic)`, and `: Mode` here");
             self.problem_help(&codes::EXPECTED, first, what, help);
