@@ -11,7 +11,7 @@ use g7_engine::{Code, Program};
 use g7_model::composed::{Composition, decomposed};
 use g7_model::instances::instantiated;
 use g7_model::named::{Checker, declared, held};
-use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
+use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, Use, codes, say};
 
 use crate::symbols::Symbols;
 use crate::{allow, check, ir, lower, resolve};
@@ -52,6 +52,7 @@ pub fn compile_with(
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
     let (typed, mut undone) = declared(doc);
+    undone.extend(doc.uses().map(unread_file));
     let (instances, mut wrong) = instantiated(&typed);
     undone.append(&mut wrong);
     let (composed, mut wrong) = decomposed(&instances);
@@ -60,11 +61,17 @@ pub fn compile_with(
     undone.append(&mut wrong);
     let (asked, mut wrong) = asked(&instances, &composed, queries);
     undone.append(&mut wrong);
-    let (compiled, problems) = compile_charts(&instances, &plain, undone, profile, &asked);
+    let (compiled, problems) = compile_charts((doc, &instances), &plain, undone, profile, &asked);
     match (&instances, &plain) {
         (Cow::Borrowed(_), Cow::Borrowed(_)) => (compiled, problems),
         _ => (compiled, once(doc, problems)),
     }
+}
+
+/// A file that nobody has put in the place of its `use` line.
+fn unread_file(used: &Use) -> Problem {
+    let what = say!("`{}` cannot be used: {}", used.name.text, say!("it was not read"));
+    Problem::new(&codes::BAD_USE, used.name.at.0, what)
 }
 
 /// The questions with plain names and numbers.
@@ -103,7 +110,7 @@ fn once(doc: &Document, mut problems: Vec<Problem>) -> Vec<Problem> {
     let charts: Vec<Span> = doc.items.iter().filter(|i| several(i)).map(Item::at).collect();
     let mut told = HashSet::new();
     problems.retain(|p| {
-        let within = charts.iter().any(|c| c.start <= p.at.start && p.at.end <= c.end);
+        let within = charts.iter().any(|c| c.file == p.at.file && c.start <= p.at.start && p.at.end <= c.end);
         !within || told.insert((p.at, p.code.id))
     });
     problems
@@ -111,7 +118,7 @@ fn once(doc: &Document, mut problems: Vec<Problem>) -> Vec<Problem> {
 
 /// Compiles a document whose charts have no parameters, and whose variables are elementary.
 fn compile_charts(
-    written: &Document,
+    (written, instances): (&Document, &Document),
     doc: &Document,
     mut undone: Vec<Problem>,
     profile: Option<ProfileName>,
@@ -128,11 +135,16 @@ fn compile_charts(
     problems.append(&mut properties(doc, &mut unit, &mut scopes));
     let unread = unread(doc);
     let gaps = !unread.is_empty();
-    let judged = clear(check::check(written, doc, &unit), &problems, unread);
+    let judged = clear(check::check(instances, doc, &unit), &problems, unread);
     problems.extend(judged);
     if gaps || problems.iter().any(|p| p.severity() == Severity::Error) {
         // A part with an error may be the one that reads the input or leaves the step.
         let loose = [&codes::DEAD_END, &codes::NEVER_JOINS, &codes::INPUT_UNREAD, &codes::OUTPUT_UNDRIVEN];
+        problems.retain(|p| !loose.contains(&p.code));
+    }
+    if is_part(written) {
+        let loose =
+            [&codes::CHART_UNUSED, &codes::UNUSED_VARIABLE, &codes::INPUT_UNREAD, &codes::OUTPUT_UNDRIVEN];
         problems.retain(|p| !loose.contains(&p.code));
     }
     allow::apply(doc, &mut problems);
@@ -151,6 +163,17 @@ fn compile_charts(
             (None, sorted(problems))
         }
     }
+}
+
+/// True for a document that runs nothing, but has what a file that uses it can run: there it is used.
+fn is_part(written: &Document) -> bool {
+    let runs = |i: &Item| match i {
+        Item::Chart(c) => c.params.is_empty(),
+        Item::Instance(_) | Item::Pre(..) | Item::Post(..) | Item::Plant(_) | Item::Test(_) => true,
+        _ => false,
+    };
+    let offers = |i: &Item| matches!(i, Item::Chart(_) | Item::Composed(_) | Item::Type(_) | Item::Function(_));
+    written.items.iter().any(offers) && !written.items.iter().any(runs)
 }
 
 /// Names and types of what is to be proved.

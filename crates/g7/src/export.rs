@@ -100,20 +100,20 @@ pub(crate) fn export(args: &Export, read_back: ReadBack) -> Result<Verdict, Fail
             raw(to.title)
         )));
     }
-    let mut problems = source.problems.clone();
-    if !source.has_errors() {
-        problems.extend(g7_compile::check(&source.document));
+    let mut problems = source.read_problems();
+    if !source.is_broken() {
+        problems.extend(g7_compile::check(source.whole()));
     }
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         problems.retain(|p| p.severity() == Severity::Error);
         return Ok(found(&source, &problems));
     }
     let written = match args.dialect {
-        Some(tool) => to.write_in(&source.document, tool.0).ok_or_else(|| {
+        Some(tool) => to.write_in(source.whole(), tool.0).ok_or_else(|| {
             Failure::Usage(say!("{} has no dialects; --dialect is for PLCopen XML", raw(to.title)))
         })?,
         None => to
-            .write(&source.document)
+            .write(source.whole())
             .ok_or_else(|| Failure::Usage(say!("{} is not written", raw(to.title))))?,
     };
     let lost = written.problems.iter().any(|p| p.severity() == Severity::Error);

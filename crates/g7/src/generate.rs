@@ -408,12 +408,12 @@ fn read(
     profile: Option<ProfileName>,
 ) -> Result<Result<(Source, g7_compile::Compiled), Verdict>, Failure> {
     let source = sources::load(path, 0)?;
-    if source.has_errors() {
-        return Ok(Err(found(&source, &source.problems)));
+    if source.is_broken() {
+        return Ok(Err(found(&source, &source.read_problems())));
     }
     let (compiled, problems) = match profile {
-        Some(profile) => g7_compile::compile_as(&source.document, profile),
-        None => g7_compile::compile(&source.document),
+        Some(profile) => g7_compile::compile_as(source.whole(), profile),
+        None => g7_compile::compile(source.whole()),
     };
     let Some(compiled) = compiled else {
         let errors: Vec<Problem> = problems.into_iter().filter(|p| p.severity() == Severity::Error).collect();

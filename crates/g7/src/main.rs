@@ -58,6 +58,7 @@ mod station;
 mod style;
 mod testing;
 mod tongue;
+mod used;
 mod users;
 mod values;
 mod view;

@@ -62,9 +62,10 @@ pub(crate) fn plant(args: &Plant) -> Result<Verdict, Failure> {
         return Ok(Verdict::Found);
     };
     // The charts run in the controller, not here.
-    source.document.items.retain(|item| {
-        !matches!(item, Item::Chart(_) | Item::Pre(..) | Item::Post(..) | Item::Section(_) | Item::Action(_))
-    });
+    let of_charts = |item: &Item| {
+        matches!(item, Item::Chart(_) | Item::Pre(..) | Item::Post(..) | Item::Section(_) | Item::Action(_))
+    };
+    source.amend(|document| document.items.retain(|item| !of_charts(item)));
     let options = Options { plant: args.plant.as_deref(), ..Options::default() };
     let Some(bench) = wiring::build(&source, &options)? else { return Ok(Verdict::Found) };
     if bench.plant.is_none() {

@@ -71,7 +71,7 @@ pub(crate) fn unproved_json(list: &[Unproved]) -> Value {
 /// All problems of a file with excerpts, in the order of the text; coloured.
 pub(crate) fn text(source: &Source, problems: &[Problem]) -> String {
     let mut sorted: Vec<&Problem> = problems.iter().collect();
-    sorted.sort_by_key(|p| (p.at.start, p.at.end));
+    sorted.sort_by_key(|p| (p.at.file, p.at.start, p.at.end));
     let mut out = String::new();
     for problem in sorted.iter().take(MANY) {
         out.push_str(&one(source, problem));
@@ -104,17 +104,18 @@ fn one(source: &Source, problem: &Problem) -> String {
 fn excerpts<'a>(source: &'a Source, problem: &'a Problem, out: &mut Vec<Element<'a>>) {
     let mut near: Vec<(Span, Option<String>)> = vec![(problem.at, None)];
     let mut far = Vec::new();
-    let line = |span: Span| source.line(source.range(span).start);
+    let line = |span: Span| source.home(span).line(source.home(span).range(span).start);
     for (span, there) in &problem.related {
         let place = (*span, Some(there.in_language(language())));
-        if line(*span).abs_diff(line(problem.at)) < EXCERPT / 2 {
+        if span.file == problem.at.file && line(*span).abs_diff(line(problem.at)) < EXCERPT / 2 {
             near.push(place)
         } else {
             far.push(vec![place])
         }
     }
     for places in std::iter::once(near).chain(far) {
-        out.push(excerpt(source, places));
+        let home = places.first().map_or(source, |(at, _)| source.home(*at));
+        out.push(excerpt(home, places));
     }
 }
 
@@ -182,6 +183,7 @@ pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
 }
 
 fn place(source: &Source, span: Span) -> Value {
+    let source = source.home(span);
     let range = source.range(span);
     let point = |byte: usize| {
         let (line, column) = source.position(byte);

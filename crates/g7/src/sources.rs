@@ -7,7 +7,7 @@ use g7_model::{Said, say, words};
 pub(crate) use g7_rig::Source;
 
 use crate::failure::{Failure, raw};
-use crate::files;
+use crate::{files, used};
 
 /// Reads a .g7 file or a file of another tool. The content decides which one it is, otherwise the
 /// name.
@@ -17,10 +17,11 @@ use crate::files;
 /// The file cannot be read, or it is neither of both.
 pub(crate) fn load(path: &Path, id: u32) -> Result<Source, Failure> {
     let name = if path == Path::new("-") { "<stdin>".to_owned() } else { path.display().to_string() };
-    let source = Source::new(&name, files::read(path)?, id);
+    let mut source = Source::new(&name, files::read(path)?, id);
     if path != Path::new("-") && !files::is_chart(path) && is_of_no_form(&source) {
         return Err(Failure::Form { name: source.name, why: no_form() });
     }
+    used::link(&mut source, path);
     Ok(source)
 }
 

@@ -44,6 +44,7 @@ pub fn lenses(readable: &Readable<'_>) -> Vec<Lens> {
             Item::Profile(_)
             | Item::Cycle(..)
             | Item::Target(..)
+            | Item::Use(_)
             | Item::Var(_)
             | Item::Instance(_)
             | Item::Composed(_)

@@ -81,6 +81,7 @@ pub fn names(document: &Document) -> Vec<Named<'_>> {
             Item::Profile(_)
             | Item::Cycle(..)
             | Item::Target(..)
+            | Item::Use(_)
             | Item::Pre(..)
             | Item::Post(..)
             | Item::Test(_)

@@ -75,6 +75,7 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
         Item::Profile(_)
         | Item::Cycle(..)
         | Item::Target(..)
+        | Item::Use(_)
         | Item::Pre(..)
         | Item::Post(..)
         | Item::Layout(_) => Vec::new(),

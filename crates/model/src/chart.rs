@@ -40,6 +40,8 @@ pub enum Item {
     Cycle(Nanos, Place),
     /// `target tsx57`.
     Target(TargetPlc, Place),
+    /// `use 'lib/axis.g7'`, or `use debounce`.
+    Use(Use),
     /// A variable of the file.
     Var(VarDecl),
     /// A chart, an expansion or a task.
@@ -71,7 +73,7 @@ pub enum Item {
 }
 
 /// `profile iec61131 { multi-token }`.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Profile {
     /// The set of switches to start from.
     pub name: ProfileName,
@@ -474,6 +476,17 @@ pub struct Composed {
     pub at: Place,
 }
 
+/// `use 'lib/axis.g7'`: the items of another file; `use debounce`: those of a part of the library that comes with G7.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Use {
+    /// The path of the file as it is written, or the name of the part.
+    pub name: Name,
+    /// True for a part of the library.
+    pub library: bool,
+    /// Where it stands.
+    pub at: Place,
+}
+
 /// `layout Conveyor { … }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -527,6 +540,11 @@ impl Document {
         self.items.iter().filter_map(|i| if let Item::Prove(p) = i { Some(p) } else { None })
     }
 
+    /// What the file uses of others, in the order of the text.
+    pub fn uses(&self) -> impl Iterator<Item = &Use> {
+        self.items.iter().filter_map(|i| if let Item::Use(u) = i { Some(u) } else { None })
+    }
+
     /// The profile, the first if there are several, else the default.
     pub fn profile(&self) -> Option<&Profile> {
         self.items.iter().find_map(|i| if let Item::Profile(p) = i { Some(p) } else { None })
@@ -539,6 +557,7 @@ impl Item {
         match self {
             Item::Profile(p) => p.at.0,
             Item::Cycle(_, at) | Item::Target(_, at) | Item::Pre(_, at) | Item::Post(_, at) => at.0,
+            Item::Use(u) => u.at.0,
             Item::Var(v) => v.at.0,
             Item::Chart(c) => c.at.0,
             Item::Instance(i) => i.at.0,

@@ -48,6 +48,7 @@ codes! {
     TOO_LARGE = "G0008" Error "the file is too large" "the .g7 format";
     UNKNOWN_WORD = "G0009" Error "a word the language does not have" "the .g7 format";
     TOO_MANY_PROBLEMS = "G0010" Error "too many problems to list" "the .g7 format";
+    BAD_USE = "G0011" Error "a file that cannot be used" "the .g7 format";
 
     // Structure
     NEVER_STARTS = "G0101" Warning "a chart that never starts" "IEC 60848:2013, 4.5.2, rule 1";

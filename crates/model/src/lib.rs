@@ -32,6 +32,7 @@ mod functions;
 pub mod instances;
 mod language;
 mod limits;
+pub mod linked;
 mod name;
 pub mod named;
 mod nanos;
@@ -56,7 +57,7 @@ pub use action::{
 pub use chart::{
     Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
     NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
-    Transition, VarDecl, VarKind,
+    Transition, Use, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_name, element_parts, filled};
 pub use fix::{Fix, TextEdit};

@@ -9,7 +9,8 @@ use crate::{
     Item, Layout, Limits, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place,
     PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said,
     Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc,
-    TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, VarDecl, VarKind, View, Work,
+    TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, VarDecl, VarKind, View,
+    Work,
 };
 
 /// A part of a document that has places in a text.
@@ -141,6 +142,7 @@ structs! {
     TestStmt { kind, at }
     TextEdit { at, text }
     Transition { label, from, to, receptivity, priority, comment, on_clearing, chained, at }
+    Use { name, library, at }
     VarDecl { kind, names, array, ty, of, limits, usual, init, address, inverted, retain, safe, comment, at }
     View { file, bindings, at }
 }
@@ -172,9 +174,7 @@ enums! {
     Item {
         Profile(part), Cycle(time, at), Target(plc, at), Var(part), Chart(part), Action(part), Section(part),
         Function(part), Pre(body, at), Post(body, at), Plant(part), Test(part), Prove(part), Layout(part),
-        Instance(part),
-        Composed(part),
-        Type(part),
+        Instance(part), Composed(part), Type(part), Use(part),
     }
     InstanceNames { One(name), Range(least, most) }
     Limits { Range(least, most), Values(values), Of(name) }

@@ -57,7 +57,7 @@ pub trait Visitor<'d> {
             Item::Instance(i) => self.instance(i),
             Item::Composed(c) => self.composed(c),
             Item::Type(t) => self.variable(t),
-            Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Layout(_) => {}
+            Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Use(_) | Item::Layout(_) => {}
         }
     }
 

@@ -128,7 +128,7 @@ pub(crate) fn export(name: &str, file: &File, to: &str) -> Result<Out, Said> {
     }
     let unknown = || say!("there is no form `{to}`");
     let format = g7_exchange::named(to).ok_or_else(unknown)?;
-    let written = format.write(&file.source.document).ok_or_else(unknown)?;
+    let written = format.write(file.source.whole()).ok_or_else(unknown)?;
     let name = format!("{stem}.{}", format.ending());
     Ok(out(file, vec![(name, written.text)], &written.problems))
 }
@@ -153,7 +153,7 @@ fn out(file: &File, files: Vec<(String, String)>, problems: &[Problem]) -> Out {
 
 /// Generates code for a controller and marks the lines of each step.
 fn code(file: &File, name: &str, code: Code) -> Result<Out, Said> {
-    let (compiled, _) = g7_compile::compile(&file.source.document);
+    let (compiled, _) = g7_compile::compile(file.source.whole());
     let compiled = compiled.ok_or_else(|| say!("the chart has errors"))?;
     let symbols = &compiled.symbols;
     let printed = match code {
@@ -191,7 +191,7 @@ fn code(file: &File, name: &str, code: Code) -> Result<Out, Said> {
 
 /// The ids of steps by the word that stands for each step in the code.
 fn words(file: &File, symbols: &Symbols, word: impl Fn(StepId) -> String) -> BTreeMap<String, String> {
-    let ids: BTreeMap<Span, String> = ids::things(&file.source.document)
+    let ids: BTreeMap<Span, String> = ids::things(file.source.whole())
         .filter_map(|(_, thing)| match thing {
             Thing::Step(_, step) => Some((step.name.at.0, thing.id())),
             Thing::Action(..) | Thing::Transition(..) => None,

@@ -17,6 +17,7 @@ mod bench;
 mod carry;
 mod error;
 mod faults;
+mod links;
 mod source;
 pub mod testing;
 pub mod values;
@@ -26,4 +27,5 @@ pub use bench::{Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSid
 pub use carry::{Carried, carry};
 pub use error::Error;
 pub use faults::fault;
+pub use links::{Other, Reader, named, resolved};
 pub use source::Source;

@@ -3,8 +3,10 @@
 use std::ops::Range;
 
 use g7_exchange::Format;
-use g7_model::{Document, FileId, Item, Problem, Scenario, Severity, Span};
+use g7_model::{Document, FileId, Item, Problem, Said, Scenario, Severity, Span, say};
 use g7_syntax::{Marks, Tree};
+
+use crate::links::{Links, Other, Reader};
 
 /// A file that was read.
 #[derive(Debug)]
@@ -25,6 +27,9 @@ pub struct Source {
     /// The marks of the text, with which a change of it reads only a part.
     pub marks: Marks,
     starts: Vec<usize>,
+    id: FileId,
+    /// What it uses, as [`Source::link`] found it.
+    links: Links,
 }
 
 impl Source {
@@ -35,14 +40,15 @@ impl Source {
         let (document, problems) = format
             .and_then(|format| format.read(&bytes, FileId(id)))
             .unwrap_or_else(|| g7_syntax::parse_bytes(&bytes, FileId(id)));
-        let marks = Marks::none(FileId(id));
-        Source { document, problems, format, marks, ..Source::plain(name, bytes) }
+        let (id, marks) = (FileId(id), Marks::none(FileId(id)));
+        Source { document, problems, format, marks, id, ..Source::plain(name, bytes) }
     }
 
     /// Reads a .g7 text, whatever its name is.
     pub fn native(name: &str, bytes: Vec<u8>, id: u32) -> Source {
         let (document, problems) = g7_syntax::parse_bytes(&bytes, FileId(id));
-        Source { document, problems, marks: Marks::none(FileId(id)), ..Source::plain(name, bytes) }
+        let (id, marks) = (FileId(id), Marks::none(FileId(id)));
+        Source { document, problems, marks, id, ..Source::plain(name, bytes) }
     }
 
     /// A file that is no chart, for the places of its problems.
@@ -52,7 +58,8 @@ impl Source {
         let name = name.chars().map(|c| if c.is_control() { '?' } else { c }).collect();
         let (document, problems) = (Document::default(), Vec::new());
         let marks = Marks::default();
-        Source { name, text, bytes, document, problems, format: None, marks, starts }
+        let (id, links) = (FileId::default(), Links::default());
+        Source { name, text, bytes, document, problems, format: None, marks, starts, id, links }
     }
 
     /// Changes the text of a .g7 file, each range of bytes to the words, and reads what the change touches.
@@ -66,6 +73,91 @@ impl Source {
         let fits = tree.change(edits);
         self.put_tree(tree);
         fits
+    }
+
+    /// Reads the files that this one uses, those that they use, and puts all together. It is done again after a
+    /// change of the text; files whose bytes are the same are not parsed again.
+    pub fn link(&mut self, read: Reader<'_>) {
+        let before = std::mem::take(&mut self.links);
+        if self.document.uses().next().is_some() {
+            self.links = Links::of(self, &before, read);
+        }
+    }
+
+    /// Links this file to the files that another one uses, without reading them again: a changed text of the same
+    /// file.
+    #[must_use]
+    pub fn linked_like(mut self, other: &Source) -> Source {
+        self.link(&mut |path| {
+            let known = other.links.others.iter().find(|o| o.path == path);
+            known.map(|o| o.source.bytes.clone()).ok_or_else(|| say!("it was not read"))
+        });
+        self
+    }
+
+    /// The document with the items of all files that this one uses: what is compiled, run and proved. Drawings,
+    /// gestures and the printer see [`Source::document`] alone.
+    pub fn whole(&self) -> &Document {
+        if self.links.whole.items.is_empty() { &self.document } else { &self.links.whole }
+    }
+
+    /// Changes what was read without a change of the text.
+    pub fn amend(&mut self, change: impl Fn(&mut Document)) {
+        change(&mut self.document);
+        if !self.links.whole.items.is_empty() {
+            change(&mut self.links.whole);
+        }
+    }
+
+    /// The files that it uses, and those that they use, in the order in which they were found.
+    pub fn others(&self) -> &[Other] {
+        &self.links.others
+    }
+
+    /// All problems that were found when files were read: of its own text, and of those that it uses.
+    pub fn read_problems(&self) -> Vec<Problem> {
+        self.problems.iter().chain(&self.links.problems).cloned().collect()
+    }
+
+    /// The number of the file in places.
+    pub fn id(&self) -> FileId {
+        self.id
+    }
+
+    /// The file in which a place lies.
+    pub fn home(&self, at: Span) -> &Source {
+        let other = self.links.others.iter().find(|o| o.source.id == at.file);
+        other.filter(|_| at.file != self.id).map_or(self, |o| &o.source)
+    }
+
+    /// Leaves out the warnings about files that this one uses: they are told where that file is checked.
+    pub fn about(&self, mut problems: Vec<Problem>) -> Vec<Problem> {
+        if !self.links.others.is_empty() {
+            problems.retain(|p| p.at.file == self.id || p.severity() == Severity::Error);
+        }
+        problems
+    }
+
+    /// A problem as one of this text: a place in another file becomes the `use` line that leads there, and words.
+    pub fn own(&self, mut problem: Problem) -> Problem {
+        for (at, there) in &mut problem.related {
+            if at.file != self.id {
+                *there = say!("{}: {}", Said::foreign(self.place(*at)), there.clone());
+                *at = self.through(*at);
+            }
+        }
+        if problem.at.file != self.id {
+            problem.what = say!("{}: {}", Said::foreign(self.place(problem.at)), problem.what);
+            problem.at = self.through(problem.at);
+            problem.fixes.clear();
+        }
+        problem
+    }
+
+    /// The `use` line that leads to the file of a place.
+    fn through(&self, at: Span) -> Span {
+        let other = self.links.others.iter().find(|o| o.source.id == at.file);
+        other.map_or(Span { file: self.id, start: 0, end: 0 }, |o| o.through)
     }
 
     fn take_tree(&mut self) -> Tree {
@@ -89,9 +181,14 @@ impl Source {
         self.format = None;
     }
 
-    /// True if one of the problems is an error.
+    /// True if one of the problems of its own text is an error.
     pub fn has_errors(&self) -> bool {
         self.problems.iter().any(|p| p.severity() == Severity::Error)
+    }
+
+    /// True if there is an error in its text, in one that it uses, or in how they go together.
+    pub fn is_broken(&self) -> bool {
+        self.has_errors() || self.links.problems.iter().any(|p| p.severity() == Severity::Error)
     }
 
     /// The tests in the file, in the order of the text.
@@ -99,8 +196,10 @@ impl Source {
         self.document.items.iter().filter_map(|i| if let Item::Test(t) = i { Some(t) } else { None })
     }
 
-    /// The range of a span within the text, rounded to whole characters.
+    /// The range of a span within the text, rounded to whole characters. Of a place in another file, it is the
+    /// `use` line that leads there.
     pub fn range(&self, span: Span) -> std::ops::Range<usize> {
+        let span = if span.file == self.id || self.links.others.is_empty() { span } else { self.through(span) };
         let floor = |at: u32| {
             let mut at = (at as usize).min(self.text.len());
             while !self.text.is_char_boundary(at) {
@@ -134,8 +233,9 @@ impl Source {
 
     /// The place of a span as `path:line:column`.
     pub fn place(&self, span: Span) -> String {
-        let (line, column) = self.position(self.range(span).start);
-        format!("{}:{line}:{column}", self.name)
+        let home = self.home(span);
+        let (line, column) = home.position(home.range(span).start);
+        format!("{}:{line}:{column}", home.name)
     }
 }
 

@@ -57,7 +57,7 @@ pub fn ask_with(
         own.iter().map(|a| Part { code: a.code, of_plant: a.of_plant }).collect()
     };
     let conditions = conditions.into_iter().map(of).collect();
-    let mut questions = if every { of_every_chart(&source.document, &bench.compiled) } else { Vec::new() };
+    let mut questions = if every { of_every_chart(source.whole(), &bench.compiled) } else { Vec::new() };
     let assume = of_the_author(properties.into_iter(), &mut questions);
     Ok((Some(Closed { bench, questions, conditions, assume }), problems))
 }

@@ -252,6 +252,7 @@ impl Model {
                 Item::Profile(_)
                 | Item::Cycle(..)
                 | Item::Target(..)
+                | Item::Use(_)
                 | Item::Plant(_)
                 | Item::Test(_)
                 | Item::Prove(_)

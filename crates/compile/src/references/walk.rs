@@ -233,7 +233,7 @@ impl<'d> Walk<'_, 'd> {
 
     fn item(&mut self, doc: &'d Document, item: &'d Item) {
         match item {
-            Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Chart(_) => {}
+            Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Use(_) | Item::Chart(_) => {}
             Item::Instance(i) => self.named_instance(i),
             Item::Composed(c) => self.composed(c),
             Item::Type(t) => self.type_declaration(t),

@@ -16,6 +16,7 @@ pub(super) fn of(all: &[Checked]) -> String {
 fn line(source: &Source, problem: &Problem) -> String {
     // GitHub's words are the same.
     let word = problem.severity().name();
+    let source = source.home(problem.at);
     let range = source.range(problem.at);
     let ((line, column), (end_line, end_column)) = (source.position(range.start), source.position(range.end));
     let file = source.name.strip_prefix("./").unwrap_or(&source.name);

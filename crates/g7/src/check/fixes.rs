@@ -41,7 +41,7 @@ pub(super) fn applied(
         if count == 0 {
             break;
         }
-        let made = Source::new(&now.source.name, text.into_bytes(), 0);
+        let made = Source::new(&now.source.name, text.into_bytes(), 0).linked_like(&now.source);
         let (source, problems) = check(made)?;
         if Tally::of(&problems).errors > Tally::of(&now.problems).errors {
             break;

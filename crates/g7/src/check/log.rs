@@ -70,10 +70,11 @@ fn result(source: &Source, problem: &Problem, rules: &BTreeMap<&str, usize>) -> 
 }
 
 fn location(source: &Source, at: Span) -> Value {
-    json!({ "physicalLocation": { "artifactLocation": artifact(&source.name), "region": region(source, at) } })
+    json!({ "physicalLocation": { "artifactLocation": artifact(&source.home(at).name), "region": region(source, at) } })
 }
 
 fn region(source: &Source, at: Span) -> Value {
+    let source = source.home(at);
     let range = source.range(at);
     let ((line, column), (end_line, end_column)) = (source.position(range.start), source.position(range.end));
     json!({ "startLine": line, "startColumn": column, "endLine": end_line, "endColumn": end_column })
@@ -84,7 +85,7 @@ fn fix(source: &Source, fix: &Fix) -> Value {
     json!({
         "description": { "text": fix.label.in_language(language()) },
         "artifactChanges": [{
-            "artifactLocation": artifact(&source.name),
+            "artifactLocation": artifact(&fix.edits.first().map_or(source, |e| source.home(e.at)).name),
             "replacements": fix.edits.iter().map(edit).collect::<Vec<_>>(),
         }],
     })

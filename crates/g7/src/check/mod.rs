@@ -138,12 +138,14 @@ fn object(all: &[Checked], tally: Tally) -> serde_json::Value {
 /// The parser's problems; if there is no syntax error, also those of charts, plants and tests.
 fn problems(mut source: Source, args: &Check) -> Result<(Source, Vec<Problem>), Failure> {
     if let Some(target) = args.target {
-        source.document.items.retain(|i| !matches!(i, Item::Target(..)));
-        source.document.items.push(Item::Target(target, Place::default()));
+        source.amend(|document| {
+            document.items.retain(|i| !matches!(i, Item::Target(..)));
+            document.items.push(Item::Target(target, Place::default()));
+        });
     }
     let mut problems = g7_rig::testing::problems(&source, args.profile)?;
     if problems.is_empty() {
-        problems.extend(g7_compile::empty(&source.document));
+        problems.extend(g7_compile::empty(source.whole()));
     }
     Ok((source, problems))
 }

@@ -35,7 +35,7 @@ impl Deref for Names {
 impl Known {
     /// The chart, for an on-line change.
     pub(crate) fn chart(&self) -> Chart<'_> {
-        Chart { bench: &self.bench, document: &self.source.document, wiring: &self.wiring }
+        Chart { bench: &self.bench, document: self.source.whole(), wiring: &self.wiring }
     }
 }
 

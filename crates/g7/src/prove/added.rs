@@ -45,6 +45,7 @@ pub(super) fn run(
 ) -> Result<(Source, Vec<Outcome>, Coverage), Failure> {
     // The name decides where the text does not: it is a .g7 file now.
     let mut made = Source::new(&format!("{}.g7", source.name), text(source, tests).into_bytes(), 0);
+    made = made.linked_like(source);
     // Only the new ones are run: they stand last.
     let mut others = made.tests().count().saturating_sub(tests.len());
     made.document.items.retain(|item| {

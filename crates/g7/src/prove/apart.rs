@@ -36,12 +36,12 @@ pub(crate) fn read_back(before: Source, after: Source) -> Result<failure::Verdic
 fn beside(sides: &[Side], args: &cli::Compare) -> Result<failure::Verdict, Failure> {
     let mut compiled = Vec::new();
     for side in sides {
-        let (charts, found) = if side.source.has_errors() {
+        let (charts, found) = if side.source.is_broken() {
             (None, Vec::new())
         } else {
-            g7_verify::ask(&side.source.document, side.profile)
+            g7_verify::ask(side.source.whole(), side.profile)
         };
-        let problems: Vec<_> = side.source.problems.iter().cloned().chain(found).collect();
+        let problems: Vec<_> = side.source.read_problems().into_iter().chain(found).collect();
         if Tally::of(&problems).errors > 0 {
             talk!("{}", report::text(&side.source, &problems).trim_end());
         }

@@ -74,8 +74,8 @@ impl File<'_> {
     fn prove(&mut self) -> Result<Vec<Problem>, Failure> {
         let (source, work) = (self.source, self.work);
         let args = &work.args;
-        let mut problems = source.problems.clone();
-        if source.has_errors() {
+        let mut problems = source.read_problems();
+        if source.is_broken() {
             return Ok(problems);
         }
         let profile = args.profile;
@@ -86,7 +86,7 @@ impl File<'_> {
         };
         if args.plant.is_none() {
             work.progress.enter(Phase::Compile);
-            let (asked, found) = ask(&source.document, profile);
+            let (asked, found) = ask(source.whole(), profile);
             problems.extend(found);
             let Some(asked) = asked else { return Ok(problems) };
             let model = Model::new(&asked.compiled, asked.assume.clone());

@@ -36,6 +36,7 @@ impl<'d> Lower<'d> {
                 Item::Target(_, at) => {
                     self.left_out(at.0, say!("the PLC whose limits are checked is left out"))
                 }
+                Item::Use(u) => self.lost(u.at.0, say!("a file that is used was not read")),
                 Item::Plant(p) => self.left_out(p.at.0, say!("a plant is left out")),
                 Item::Test(t) => self.left_out(t.at.0, say!("a test is left out")),
                 Item::Prove(p) => self.left_out(p.at.0, say!("a property is left out")),

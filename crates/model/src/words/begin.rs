@@ -110,6 +110,14 @@ pub const FILE: &[Word] = &[
             "um autómato cujos limites são verificados",
         ],
     ),
+    Word::free(
+        "use",
+        [
+            "another file, or a part of the library",
+            "un autre fichier, ou une partie de la bibliothèque",
+            "outro ficheiro, ou uma parte da biblioteca",
+        ],
+    ),
     Word::reserved(
         "layout",
         [

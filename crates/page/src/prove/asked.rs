@@ -85,13 +85,14 @@ pub(super) fn closed(source: &Source) -> Vec<Closed> {
 /// The text with these changes, and its questions, if it has no errors.
 pub(super) fn changed(file: &File, splices: &[Splice]) -> Option<(Source, Asked)> {
     let source = Source::new(&file.source.name, spliced(file.text(), splices)?.into_bytes(), 0);
-    let (asked, problems) = ask(&source.document, None);
-    let wrong = source.has_errors() || problems.iter().any(|p| p.severity() == Severity::Error);
+    let source = source.linked_like(&file.source);
+    let (asked, problems) = ask(source.whole(), None);
+    let wrong = source.is_broken() || problems.iter().any(|p| p.severity() == Severity::Error);
     asked.filter(|_| !wrong).map(|asked| (source, asked))
 }
 
 /// The questions of a file without errors.
 pub(super) fn questions(file: &File) -> Option<Asked> {
     let wrong = file.problems.iter().any(|p| p.severity() == Severity::Error);
-    if wrong { None } else { ask(&file.source.document, None).0 }
+    if wrong { None } else { ask(file.source.whole(), None).0 }
 }

@@ -75,7 +75,7 @@ pub(crate) fn compared(files: [&File; 2], wish: &Both) -> Result<Compared, g7_mo
     for (side, (file, name)) in files.into_iter().zip(&wish.profiles).enumerate() {
         let profile: Option<ProfileName> = name.as_deref().map(profile).transpose()?;
         let wrong = file.problems.iter().any(|p| p.severity() == Severity::Error);
-        match ask(&file.source.document, profile) {
+        match ask(file.source.whole(), profile) {
             (Some(asked), problems) if !wrong && problems.iter().all(|p| p.severity() != Severity::Error) => {
                 sides.push(asked);
             }

@@ -78,7 +78,7 @@ pub(super) fn both(file: &File, model: &Model<'_>, run: &Run) -> Option<String> 
 
 fn pair<'a>(file: &'a File, model: &Model<'_>, ranks: &[u32]) -> Option<Pair<'a>> {
     let symbols = &model.compiled.symbols;
-    let thing = |rank: &u32| match ids::at(&file.source.document, symbols.transition_place(*rank))? {
+    let thing = |rank: &u32| match ids::at(file.source.whole(), symbols.transition_place(*rank))? {
         Thing::Transition(chart, n) if symbols.is_written(*rank) => Some((chart, n)),
         _ => None,
     };

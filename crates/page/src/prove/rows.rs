@@ -146,9 +146,9 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
         from,
         to,
         line,
-        id: symbol(&file.source.document, question),
+        id: symbol(file.source.whole(), question),
         blame: match (verdict, run) {
-            (Verdict::Refuted(_), Some(run)) => guilty(&file.source.document, model, &question.claim, run),
+            (Verdict::Refuted(_), Some(run)) => guilty(file.source.whole(), model, &question.claim, run),
             _ => Vec::new(),
         },
         chance: run.map_or_else(Vec::new, |run| run.ways.clone()),

@@ -133,7 +133,7 @@ fn test(
     let printed = g7_syntax::print(&Document { items, ..Document::default() }, None);
     let splice = place(file, Sort::Test, printed.trim());
     let text = spliced(file.text(), std::slice::from_ref(&splice)).ok_or(saved::UNSEEN)?;
-    if !fails(&file.source.name, text, &title) {
+    if !fails(file, text, &title) {
         return Err(saved::UNSEEN);
     }
     Ok(Added { title, splices: outward(file, &[splice]) })
@@ -147,8 +147,8 @@ fn fresh(file: &File, title: String) -> String {
 }
 
 /// True if the test with this title fails in its last statement.
-fn fails(name: &str, text: String, title: &str) -> bool {
-    let source = Source::new(name, text.into_bytes(), 0);
+fn fails(file: &File, text: String, title: &str) -> bool {
+    let source = Source::new(&file.source.name, text.into_bytes(), 0).linked_like(&file.source);
     let options = testing::Options { filter: Some(title), ..testing::Options::default() };
     let (mut coverage, mut clock) = (Coverage::default(), VirtualClock::default());
     let Ok((outcomes, _)) = testing::file(&source, options, &mut coverage, &mut clock, &mut || {}) else {

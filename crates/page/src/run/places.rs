@@ -40,7 +40,7 @@ impl Places {
     pub fn new(source: &Source, bench: &Bench) -> Places {
         let mut steps: BTreeMap<Span, (String, String)> = BTreeMap::new();
         let mut transitions = steps.clone();
-        for (at, thing) in ids::things(&source.document) {
+        for (at, thing) in ids::things(source.whole()) {
             match thing {
                 Thing::Step(c, s) => _ = steps.insert(s.name.at.0, (thing.id(), c.name.text.to_string())),
                 Thing::Transition(c, ..) => _ = transitions.insert(at, (thing.id(), c.name.text.to_string())),

@@ -117,7 +117,7 @@ pub(crate) fn start(source: &Source, wish: &Start, language: Language) -> Result
         places: Places::new(source, &bench),
         recording: recording(&bench),
         past: Past::new(&runner),
-        document: Arc::new(source.document.clone()),
+        document: Arc::new(source.whole().clone()),
         text: source.text.as_str().into(),
         positions: Arc::new(Positions::new(&source.text)),
         wish: wish.without_moves(),

@@ -30,7 +30,7 @@ impl Run {
     pub(crate) fn swap(&mut self, source: &Source, forced: bool) -> Result<Vec<Said>, Said> {
         self.only_now()?;
         let new = bench(source, &self.wish)?;
-        let document = Arc::new(source.document.clone());
+        let document = Arc::new(source.whole().clone());
         // A scan that is executed pass by pass is completed first.
         if self.runner.is_within_scan() {
             self.scan();

@@ -27,8 +27,8 @@ const PARTS: u32 = 6;
 ///
 /// The plant that was asked for does not exist.
 pub fn build(source: &Source, options: &Options<'_>) -> Result<(Option<Bench>, Vec<Problem>), Error> {
-    let mut problems = source.problems.clone();
-    if source.has_errors() {
+    let mut problems = source.read_problems();
+    if source.is_broken() {
         return Ok((None, problems));
     }
     let plant = plant_of(source, options.plant)?;
@@ -37,25 +37,25 @@ pub fn build(source: &Source, options: &Options<'_>) -> Result<(Option<Bench>, V
     };
     // The bench is the terminal too: what that sets is there, whether the text names it or not,
     // and before all that the questions name, so that the items are the same for any questions.
-    let mut of_charts = g7_compile::resolve::terminal(&source.document, options.profile);
+    let mut of_charts = g7_compile::resolve::terminal(source.whole(), options.profile);
     let own = of_charts.len();
     of_charts.extend(asks(false));
-    let (charts, found) = g7_compile::compile_with(&source.document, options.profile, &of_charts);
-    problems.extend(found);
+    let (charts, found) = g7_compile::compile_with(source.whole(), options.profile, &of_charts);
+    problems.extend(source.about(found));
     let Some(charts) = charts else { return Ok((None, problems)) };
     let mut items = Vec::new();
     variables(&charts, &mut items);
     let mut side = None;
     if let Some(plant) = plant {
-        let (made, found) = plant_side(&source.document, plant, &charts, &asks(true));
-        problems.extend(found);
+        let (made, found) = plant_side(source.whole(), plant, &charts, &asks(true));
+        problems.extend(source.about(found));
         let Some(made) = made else { return Ok((None, problems)) };
         states(&made.compiled.symbols, &mut items);
         side = Some(made);
     }
     system_bits(&charts.symbols, &mut items);
     let answers = answers(options.asks, &charts, own, side.as_ref());
-    let steps = steps(&source.document, &charts.symbols);
+    let steps = steps(source.whole(), &charts.symbols);
     let period = options.scan.unwrap_or(charts.symbols.cycle).max(Nanos::new(1));
     Ok((Some(Bench { items, steps, plant: side, period, answers, compiled: charts }), problems))
 }

@@ -2,11 +2,13 @@
 
 use super::Parser;
 use super::marks::Level;
+use g7_iec::constant;
 use crate::lexer::Tok;
+use crate::quote;
 use crate::words;
 use g7_model::{
     Block, Document, Expr, ExprKind, Fix, Function, Item, Name, NamedAction, Path, Problem, Profile,
-    ProfileName, Said, Section, Stmt, StmtKind, Switch, TargetPlc, codes, say,
+    ProfileName, Said, Section, Stmt, StmtKind, Switch, TargetPlc, Use, codes, say,
 };
 
 impl Parser<'_> {
@@ -50,6 +52,7 @@ impl Parser<'_> {
                 Item::Cycle(time, self.since(start).into())
             }
             "target" => self.line(Parser::target),
+            "use" => Item::Use(self.line(Parser::using)),
             "chart" | "macrochart" | "task" => Item::Chart(self.chart()),
             "instance" => Item::Instance(self.line(Parser::instance)),
             "struct" => Item::Composed(self.structure()),
@@ -225,6 +228,34 @@ impl Parser<'_> {
             self.unknown(word, say!("a PLC whose limits are known"), &TargetPlc::ALL.map(TargetPlc::name));
         }
         Item::Target(found.unwrap_or(TargetPlc::Tsx57), self.since(start).into())
+    }
+
+    /// True if `use` begins an item here: the name of a variable or step can be the same word.
+    pub(super) fn at_use(&mut self) -> bool {
+        let (first, next) = (self.cur.newline, self.peek());
+        let named = matches!(next.kind, Tok::Str | Tok::Comment | Tok::Word | Tok::Ticked);
+        first && named && !next.newline
+    }
+
+    /// `use 'lib/axis.g7'`, or `use debounce`.
+    fn using(&mut self) -> Use {
+        let start = self.bump().start;
+        let token = self.cur;
+        let at = self.span_of(token);
+        let (name, library) = match token.kind {
+            Tok::Str => {
+                self.bump();
+                (Name::new(self.string(token), at), false)
+            }
+            Tok::Comment => {
+                let path = quote::unquote(self.slice(token), '"');
+                self.slip_to(at, say!("a path stands in single quotes"), &constant::quote_st(&path));
+                self.bump();
+                (Name::new(path, at), false)
+            }
+            _ => (self.name(say!("the path of a file in quotes, or the name of a part of the library")), true),
+        };
+        Use { name, library, at: self.since(start).into() }
     }
 
     /// `action Pump { … }`.

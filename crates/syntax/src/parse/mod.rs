@@ -463,6 +463,7 @@ impl<'a> Parser<'a> {
             "instance" => self.at_instance(),
             "struct" => self.at_structure(),
             "type" => self.at_type(),
+            "use" => self.at_use(),
             _ => false,
         }
     }

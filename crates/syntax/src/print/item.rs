@@ -5,7 +5,7 @@ use crate::parse::SWITCHES;
 use g7_iec::constant;
 use g7_model::{
     Array, Document, Expr, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Param,
-    Profile, Section, Span, StmtKind, Switch, VarDecl, VarKind,
+    Profile, Section, Span, StmtKind, Switch, Use, VarDecl, VarKind,
 };
 
 impl Printer<'_> {
@@ -33,6 +33,7 @@ impl Printer<'_> {
                 s.push("target ");
                 s.push(plc.name());
             }),
+            Item::Use(u) => self.line(u.at.0, apart, |s| s.using(u)),
             Item::Var(v) => self.line(v.at.0, apart, |s| s.variable(v)),
             Item::Chart(c) => self.group(c.at.0, apart, |s| s.chart(c)),
             Item::Instance(i) => self.line(i.at.0, apart, |s| s.instance(i)),
@@ -56,6 +57,15 @@ impl Printer<'_> {
             Item::Test(t) => self.group(t.at.0, apart, |s| s.test(t)),
             Item::Prove(p) => self.line(p.at.0, apart, |s| s.property(p)),
             Item::Layout(l) => self.group(l.at.0, apart, |s| s.layout(l)),
+        }
+    }
+
+    fn using(&mut self, used: &Use) {
+        self.push("use ");
+        if used.library {
+            self.name(&used.name.text);
+        } else {
+            self.push(&constant::quote_st(&used.name.text));
         }
     }
 
@@ -246,6 +256,7 @@ pub(super) fn stand_apart(a: &Item, b: &Item) -> bool {
 #[derive(PartialEq, Eq, Clone, Copy)]
 enum Family {
     Head,
+    Uses,
     Types,
     Variables,
     Properties,
@@ -256,6 +267,7 @@ enum Family {
 fn family(item: &Item) -> Family {
     match item {
         Item::Profile(_) | Item::Cycle(..) | Item::Target(..) => Family::Head,
+        Item::Use(_) => Family::Uses,
         Item::Var(_) => Family::Variables,
         Item::Type(_) => Family::Types,
         Item::Prove(_) => Family::Properties,

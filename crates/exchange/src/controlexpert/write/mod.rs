@@ -108,6 +108,7 @@ impl Writer<'_> {
                 Item::Action(a) => self.named(None, a),
                 Item::Section(s) => self.section(None, s),
                 Item::Pre(_, at) | Item::Post(_, at) => self.around(*at),
+                Item::Use(u) => self.speech.cannot(u.at, say!("a file that is used was not read")),
                 Item::Function(f) => self.speech.cannot(f.at, say!("a function")),
                 Item::Target(_, at) => self.speech.leave_out(*at, say!("a target")),
                 Item::Plant(p) => self.speech.leave_out(p.at, say!("a plant")),

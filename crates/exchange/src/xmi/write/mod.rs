@@ -126,6 +126,7 @@ impl<'d> Writer<'d> {
             Item::Target(_, at) => self.leave_out(*at, say!("a target")),
             // The charts of the instances stand in their place already.
             Item::Instance(_) | Item::Composed(_) | Item::Type(_) => {}
+            Item::Use(u) => self.cannot(u.at, say!("a file that is used was not read")),
             Item::Action(a) => self.cannot(a.at, say!("a named action")),
             Item::Section(s) => self.cannot(s.at, say!("a transition section")),
             Item::Function(f) => self.cannot(f.at, say!("a function")),

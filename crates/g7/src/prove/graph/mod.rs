@@ -82,8 +82,8 @@ pub(crate) fn graph(args: &Graph) -> Result<Verdict, Failure> {
     files::refuse_foreign(args.output.as_deref(), &[&path], args.force)?;
     let source = sources::load(&path, 0)?;
     let (asked, found) =
-        if source.has_errors() { (None, Vec::new()) } else { ask(&source.document, args.profile) };
-    let problems: Vec<_> = source.problems.iter().cloned().chain(found).collect();
+        if source.is_broken() { (None, Vec::new()) } else { ask(source.whole(), args.profile) };
+    let problems: Vec<_> = source.read_problems().into_iter().chain(found).collect();
     let Some(asked) = asked.filter(|_| Tally::of(&problems).errors == 0) else {
         talk!("{}", report::text(&source, &problems).trim_end());
         return Ok(Verdict::Found);

@@ -1,0 +1,51 @@
+//! Reads the files that a chart uses from its project folder, and from nowhere else.
+//!
+//! The folder is the nearest one above the chart that holds a project file, `g7.toml`; where there is none, that of
+//! the chart. A link that leads out of it is not followed.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use g7_model::{Said, say};
+
+use crate::failure::raw;
+use crate::files;
+use crate::sources::Source;
+
+/// The file that marks the folder of a project.
+pub(crate) const PROJECT: &str = "g7.toml";
+
+/// Links a chart to the files that it uses.
+pub(crate) fn link(source: &mut Source, path: &Path) {
+    let path = if path == Path::new("-") { Path::new("") } else { path };
+    let folder = match path.parent() {
+        Some(folder) if folder != Path::new("") => folder.to_path_buf(),
+        _ => PathBuf::from("."),
+    };
+    let root = root(&folder);
+    source.link(&mut |used| within(&root, &folder.join(used)));
+}
+
+/// The folder of the project to which a folder belongs.
+pub(crate) fn root(folder: &Path) -> PathBuf {
+    let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
+    let project = whole.ancestors().find(|f| f.join(PROJECT).is_file()).map(Path::to_path_buf);
+    project.unwrap_or(whole)
+}
+
+/// The bytes of a file that lies in a folder.
+pub(crate) fn within(root: &Path, path: &Path) -> Result<Vec<u8>, Said> {
+    let told = |e: &std::io::Error| match e.kind() {
+        std::io::ErrorKind::NotFound => say!("there is no such file"),
+        _ => raw(e),
+    };
+    let whole = path.canonicalize().map_err(|e| told(&e))?;
+    if !whole.starts_with(root) {
+        return Err(say!("it lies outside of the folder {}; a file `g7.toml` marks the folder of a project", raw(root.display())));
+    }
+    // A pipe or a device could keep the reader waiting.
+    if !fs::metadata(&whole).map_err(|e| told(&e))?.is_file() {
+        return Err(say!("it is no file"));
+    }
+    files::read(&whole).map_err(|e| raw(e))
+}

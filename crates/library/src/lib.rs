@@ -1,0 +1,32 @@
+//! The library that comes with G7: parts written in its own language, which a chart takes in with `use debounce`.
+//!
+//! The texts stand in `library/` of the repository, their tests in `library/tests/`, and each part has a page in
+//! the book. Texts alone: whoever links files reads them (`rig`).
+#![no_std]
+#![forbid(unsafe_code)]
+
+/// A part of the library.
+#[derive(Clone, Copy, Debug)]
+pub struct Part {
+    /// Its name behind `use`.
+    pub name: &'static str,
+    /// A .g7 file.
+    pub text: &'static str,
+}
+
+macro_rules! parts {
+    ($($name:literal)*) => {
+        /// All parts, in the order of the alphabet.
+        pub static PARTS: &[Part] = &[
+            $(Part { name: $name, text: include_str!(concat!("../../../library/", $name, ".g7")) }),*
+        ];
+    };
+}
+
+parts! {
+}
+
+/// The part of this name.
+pub fn part(name: &str) -> Option<&'static Part> {
+    PARTS.iter().find(|p| p.name == name)
+}
