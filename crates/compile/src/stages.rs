@@ -11,7 +11,9 @@ use g7_engine::{Code, Program};
 use g7_model::composed::{Composition, decomposed};
 use g7_model::instances::instantiated;
 use g7_model::named::{Checker, declared, held};
-use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, Use, codes, say};
+use g7_model::{
+    Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, Use, codes, say,
+};
 
 use crate::symbols::Symbols;
 use crate::{allow, check, ir, lower, resolve};
@@ -172,7 +174,8 @@ fn is_part(written: &Document) -> bool {
         Item::Instance(_) | Item::Pre(..) | Item::Post(..) | Item::Plant(_) | Item::Test(_) => true,
         _ => false,
     };
-    let offers = |i: &Item| matches!(i, Item::Chart(_) | Item::Composed(_) | Item::Type(_) | Item::Function(_));
+    let offers =
+        |i: &Item| matches!(i, Item::Chart(_) | Item::Composed(_) | Item::Type(_) | Item::Function(_));
     written.items.iter().any(offers) && !written.items.iter().any(runs)
 }
 

@@ -41,7 +41,10 @@ pub(crate) fn within(root: &Path, path: &Path) -> Result<Vec<u8>, Said> {
     };
     let whole = path.canonicalize().map_err(|e| told(&e))?;
     if !whole.starts_with(root) {
-        return Err(say!("it lies outside of the folder {}; a file `g7.toml` marks the folder of a project", raw(root.display())));
+        return Err(say!(
+            "it lies outside of the folder {}; a file `g7.toml` marks the folder of a project",
+            raw(root.display())
+        ));
     }
     // A pipe or a device could keep the reader waiting.
     if !fs::metadata(&whole).map_err(|e| told(&e))?.is_file() {

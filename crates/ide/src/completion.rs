@@ -9,7 +9,9 @@ use g7_model::{
 };
 use g7_syntax::{Token, TokenKind};
 
-use crate::file::{File, floor};
+use g7_rig::{LIBRARY, Part};
+
+use crate::file::{File, OWN, floor};
 use crate::names::{Meaning, names, sort};
 use crate::tables::{declaration, member_declaration, type_declaration};
 
@@ -64,7 +66,8 @@ pub fn complete(file: &File, at: usize) -> Completion {
     let readable = file.drawn();
     let prefix = &*text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
     let at = u32::try_from(byte).unwrap_or(u32::MAX);
-    let place = Place { text, before, prefix, document: readable.document, at };
+    let document = file.with_uses(readable.document);
+    let place = Place { text, before, prefix, document: &document, at };
     let mut items = place.choices();
     items.retain(|c| c.label.to_lowercase().contains(prefix));
     items.sort_by_key(|c| !c.label.to_lowercase().starts_with(prefix));
@@ -120,6 +123,10 @@ impl Place<'_> {
             (_, "profile") => {
                 let one = |p: ProfileName| choice(p.name(), "profile", Said::foreign(p.does()[0]), p.name());
                 ProfileName::ALL.map(one).into()
+            }
+            (_, "use") => {
+                let told = |p: &Part| choice(p.name, "library", Said::foreign(p.title()), p.name);
+                LIBRARY.iter().map(told).collect()
             }
             (_, "force" | "enclose" | "call" | "enable" | "mask" | "layout" | "instance") => self.charts(),
             (_, "with") => self.others("plant"),
@@ -244,7 +251,9 @@ impl Place<'_> {
     }
 
     fn here(&self) -> Option<&g7_model::Chart> {
-        self.document.charts().find(|c| c.at.0.start <= self.at && self.at <= c.at.0.end)
+        let around =
+            |c: &&g7_model::Chart| c.at.0.file == OWN && c.at.0.start <= self.at && self.at <= c.at.0.end;
+        self.document.charts().find(around)
     }
 
     /// The types that the file declares, where a variable can have one.

@@ -1,5 +1,7 @@
 //! A file that is open in an editor.
 
+use std::borrow::Cow;
+use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
 use g7_edit::{Edit, History, Splice, spliced};
@@ -26,7 +28,18 @@ pub struct File {
     pub history: History,
     /// The language of the reader: of hover, completion and the titles of fixes.
     pub language: Language,
+    /// The texts of the files that it may use.
+    texts: Arc<Texts>,
+    /// The names of the files that it uses, and that those use; also of files that are not there.
+    pub uses: Vec<String>,
 }
+
+/// Texts of files that others use, by their names; `None` for a file that is not there. A file that is missing in the
+/// list was not asked for yet.
+pub type Texts = BTreeMap<String, Option<Arc<str>>>;
+
+/// The number of an open file in places; those that it uses have others.
+pub(crate) const OWN: FileId = FileId(0);
 
 /// Greatest length of a text that is opened, in bytes.
 const MOST: usize = 16 << 20;
@@ -66,6 +79,8 @@ impl File {
             imported,
             history: History::default(),
             language: Language::default(),
+            texts: Arc::default(),
+            uses: Vec::new(),
             source,
         };
         file.judge();
@@ -180,10 +195,48 @@ impl File {
         !self.source.has_errors()
     }
 
+    /// Takes the texts of other files. Returns true if one that it uses is another one than before.
+    pub fn lend(&mut self, texts: &Arc<Texts>) -> bool {
+        let before = std::mem::replace(&mut self.texts, Arc::clone(texts));
+        let changed = self.uses.iter().any(|name| before.get(name) != self.texts.get(name));
+        if changed {
+            self.version += 1;
+            self.judge();
+        }
+        changed
+    }
+
+    /// The texts that it was lent, of the files that it uses.
+    pub fn lent(&self) -> impl Iterator<Item = (&String, &Option<Arc<str>>)> {
+        self.uses.iter().filter_map(|name| self.texts.get_key_value(name))
+    }
+
+    /// The names of the files that it uses and whose texts it was not lent yet.
+    pub fn wants(&self) -> impl Iterator<Item = &String> {
+        self.uses.iter().filter(|name| !self.texts.contains_key(*name))
+    }
+
+    /// Puts the file together with those that it uses.
+    fn link(&mut self) {
+        self.uses.clear();
+        let (name, texts, uses) = (self.source.name.clone(), &self.texts, &mut self.uses);
+        self.source.link(&mut |path| {
+            let name = g7_rig::named(&name, path);
+            let text = texts.get(&name).cloned();
+            uses.push(name);
+            match text {
+                Some(Some(text)) => Ok(text.as_bytes().to_vec()),
+                Some(None) => Err(say!("there is no such file")),
+                None => Err(say!("it was not read")),
+            }
+        });
+    }
+
     /// Finds the problems.
     fn judge(&mut self) {
+        self.link();
         self.problems = match g7_rig::testing::problems(&self.source, None) {
-            Ok(problems) => problems,
+            Ok(problems) => problems.into_iter().map(|p| self.source.own(p)).collect(),
             Err(_) => self.source.problems.clone(),
         };
         self.problems.sort_by_key(|p| (p.at, p.severity() == Severity::Warning));
@@ -219,6 +272,18 @@ impl File {
             Some(clean) if !self.is_clean() => clean.readable(),
             _ => self.present(),
         }
+    }
+}
+
+impl File {
+    /// A document with what the files have that this one uses.
+    pub(crate) fn with_uses<'d>(&self, own: &'d Document) -> Cow<'d, Document> {
+        if self.source.others().is_empty() {
+            return Cow::Borrowed(own);
+        }
+        let used = self.source.whole().items.iter().filter(|i| i.at().file != OWN);
+        let items = own.items.iter().chain(used).cloned().collect();
+        Cow::Owned(Document { items, notes: Vec::new() })
     }
 }
 

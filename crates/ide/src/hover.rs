@@ -43,7 +43,7 @@ pub fn hover(file: &File, byte: usize) -> Option<Hover> {
         (None, Some(sign)) => sign.clone(),
         (None, None) => file.problems.iter().map(|p| file.source.range(p.at)).find(touches)?,
     };
-    let document = &file.source.document;
+    let document = file.source.whole();
     let named = word.as_ref().and_then(|w| declared(document, byte).or_else(|| meaning(document, w)));
     let (about, rule) = match (named, &word, &sign) {
         (Some(named), _, _) => (Some(describe(&named, language)), None),

@@ -64,7 +64,7 @@ pub fn logic(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
     let document = &file.source.document;
     let (_, thing) =
         ids::things(document).find(|(_, t)| t.id() == id).ok_or_else(|| say!("there is no `{id}`"))?;
-    let symbols = g7_compile::compile(document).0.map(|c| c.symbols);
+    let symbols = g7_compile::compile(file.source.whole()).0.map(|c| c.symbols);
     let boolean = |e: &Expr| is_boolean(e, symbols.as_ref());
     let show = Show { document, boolean: &boolean };
     Ok(match thing {

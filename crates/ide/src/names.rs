@@ -1,5 +1,6 @@
 //! The names that a document defines, and their meaning.
 
+use crate::file::OWN;
 use g7_compile::Definition;
 use g7_compile::references::{Member, values};
 use g7_model::{
@@ -188,7 +189,7 @@ fn plain(text: &str, token: Token) -> Option<&str> {
 /// The definition of a word of the text, as far as the place decides it.
 pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>> {
     let at = u32::try_from(word.token.start).ok()?;
-    let inside = |s: Span| s.start <= at && at < s.end;
+    let inside = |s: Span| s.file == OWN && s.start <= at && at < s.end;
     // `X12` and `Chart.X12` name the step variable of step 12.
     let stem = word.text.strip_prefix('X').filter(|s| s.starts_with(|c: char| c.is_ascii_digit()));
     let fits = |n: &Named<'_>| {
@@ -228,7 +229,7 @@ pub fn meaning<'d>(document: &'d Document, word: &Word<'_>) -> Option<Named<'d>>
 pub fn declared(document: &Document, byte: usize) -> Option<Named<'_>> {
     // Following all names is of use only where there are such types.
     document.items.iter().find(|i| matches!(i, Item::Composed(_) | Item::Type(_)))?;
-    let known = g7_compile::references(document);
+    let known = g7_compile::references(document).seen_from(OWN);
     let definition = known.at(u32::try_from(byte).ok()?)?;
     names(document).into_iter().find(|n| match (&n.meaning, definition) {
         (Meaning::Type(_) | Meaning::Named(_), Definition::Type(name)) => *n.name.text == **name,

@@ -3,9 +3,9 @@
 use std::ops::Range;
 
 use g7_edit::Splice;
-use g7_model::{Said, Span};
+use g7_model::{Said, Span, say};
 
-use crate::file::File;
+use crate::file::{File, OWN};
 use crate::names::{meaning, word_at};
 
 /// The places of a name.
@@ -15,16 +15,23 @@ pub struct Uses {
     pub all: Vec<Range<usize>>,
     /// The declaration.
     pub declared: Option<Range<usize>>,
+    /// The declaration, where it stands in a file that this one uses.
+    pub elsewhere: Option<Span>,
 }
 
 /// All places that name the same part as the word at a byte.
 pub fn uses(file: &File, at: usize) -> Uses {
-    let known = g7_compile::references(&file.source.document);
+    let known = g7_compile::references(file.source.whole()).seen_from(OWN);
     match known.at(offset(at)) {
-        Some(named) => Uses {
-            all: known.of(named).into_iter().map(Span::bytes).collect(),
-            declared: known.declaration(named).map(Span::bytes),
-        },
+        Some(named) => {
+            let own = |at: &Span| at.file == OWN;
+            let declared = known.declaration(named);
+            Uses {
+                all: known.of(named).into_iter().filter(own).map(Span::bytes).collect(),
+                declared: declared.filter(own).map(Span::bytes),
+                elsewhere: declared.filter(|at| !own(at)),
+            }
+        }
         // Names that are not indexed, such as a function's name inside the function, are found by
         // spelling.
         None => spelled(file, at).unwrap_or_default(),
@@ -38,12 +45,12 @@ fn spelled(file: &File, at: usize) -> Option<Uses> {
         .filter(|t| file.text().get(t.start..t.end).is_some_and(|w| w.trim_matches('`') == word.text))
         .map(|t| t.start..t.end)
         .collect();
-    Some(Uses { all, declared: Some(named.name.at.0.bytes()) })
+    Some(Uses { all, declared: Some(named.name.at.0.bytes()), elsewhere: None })
 }
 
 /// The name at a byte that can be changed: its place, and its spelling without back-ticks.
 pub fn changeable(file: &File, at: usize) -> Option<(Range<usize>, String)> {
-    let known = g7_compile::references(&file.source.document);
+    let known = g7_compile::references(file.source.whole()).seen_from(OWN);
     let found = known.use_at(offset(at))?;
     let whole = found.at.bytes();
     let name = whole.start + found.before..whole.end;
@@ -53,6 +60,9 @@ pub fn changeable(file: &File, at: usize) -> Option<(Range<usize>, String)> {
 
 /// The change that gives the part named at a byte another name, or why it cannot have it.
 pub fn rename(file: &File, at: usize, to: &str) -> Result<Vec<Splice>, Said> {
+    if let Some(there) = uses(file, at).elsewhere {
+        return Err(say!("this is declared in {}; rename it there", Said::foreign(file.source.place(there))));
+    }
     Ok(g7_edit::rename_at(&file.as_edited(), at, to)?.splices)
 }
 

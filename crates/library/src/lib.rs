@@ -14,6 +14,13 @@ pub struct Part {
     pub text: &'static str,
 }
 
+impl Part {
+    /// The first line of its text: what it is, in a few words.
+    pub fn title(&self) -> &'static str {
+        self.text.lines().next().unwrap_or_default().trim_start_matches('/').trim()
+    }
+}
+
 macro_rules! parts {
     ($($name:literal)*) => {
         /// All parts, in the order of the alphabet.
@@ -24,6 +31,18 @@ macro_rules! parts {
 }
 
 parts! {
+    "alarm"
+    "blink"
+    "debounce"
+    "drive"
+    "filter"
+    "hysteresis"
+    "pid"
+    "ramp"
+    "scale"
+    "stopwatch"
+    "totaliser"
+    "valve"
 }
 
 /// The part of this name.

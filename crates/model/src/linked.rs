@@ -29,7 +29,13 @@ pub struct Linked<'d> {
 /// The whole of which the first file is the head, and what does not go together.
 pub fn linked(files: &[Linked<'_>]) -> (Document, Vec<Problem>) {
     let Some(head) = files.first() else { return (Document::default(), Vec::new()) };
-    let mut linker = Linker { files, done: vec![false; files.len()], way: Vec::new(), items: Vec::new(), problems: Vec::new() };
+    let mut linker = Linker {
+        files,
+        done: vec![false; files.len()],
+        way: Vec::new(),
+        items: Vec::new(),
+        problems: Vec::new(),
+    };
     linker.file(0);
     for (number, file) in files.iter().enumerate().skip(1) {
         if linker.done.get(number) == Some(&true) {

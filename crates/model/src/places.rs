@@ -9,8 +9,7 @@ use crate::{
     Item, Layout, Limits, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place,
     PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said,
     Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc,
-    TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, VarDecl, VarKind, View,
-    Work,
+    TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, VarDecl, VarKind, View, Work,
 };
 
 /// A part of a document that has places in a text.

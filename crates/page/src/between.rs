@@ -11,6 +11,8 @@
 //! whole program, so it never answers this way. What the first module does not contain is decided where it is
 //! answered, by [`not_here`].
 
+use std::sync::Arc;
+
 use g7_ide::{File, convert};
 use g7_model::{FileId, Language, Problem, Said, Span, codes};
 use serde::{Deserialize, Serialize};
@@ -49,17 +51,35 @@ pub(crate) enum Between {
 pub(crate) struct Lent {
     pub(crate) file: String,
     text: String,
+    /// The files that it uses.
+    #[serde(default)]
+    uses: Vec<Shelved>,
+}
+
+/// A file that another one uses.
+#[derive(Debug, Deserialize, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
+pub(crate) struct Shelved {
+    /// Its name.
+    pub(crate) file: String,
+    /// Its text; none if it is not there.
+    pub(crate) text: Option<String>,
 }
 
 impl Lent {
     pub(crate) fn new(name: &str, file: &File) -> Lent {
-        Lent { file: name.to_owned(), text: file.text().to_owned() }
+        let uses = file
+            .lent()
+            .map(|(name, text)| Shelved { file: name.clone(), text: text.as_deref().map(str::to_owned) });
+        Lent { file: name.to_owned(), text: file.text().to_owned(), uses: uses.collect() }
     }
 
     /// The file with its text.
     pub(crate) fn file(&self, language: Language) -> Result<File, Said> {
         let mut file = File::open_native(&self.file, self.text.clone())?;
         file.language = language;
+        let texts = self.uses.iter().map(|u| (u.file.clone(), u.text.as_deref().map(Arc::from)));
+        file.lend(&Arc::new(texts.collect()));
         Ok(file)
     }
 }
@@ -102,7 +122,7 @@ struct Told {
 }
 
 /// Converts a foreign file.
-pub(crate) fn import(Lent { file, text }: Lent, language: Language) -> Result<Imported, Said> {
+pub(crate) fn import(Lent { file, text, .. }: Lent, language: Language) -> Result<Imported, Said> {
     let (text, problems) = convert(&file, text)?;
     let told = problems.iter().map(|p| Told {
         code: p.code.id.to_owned(),

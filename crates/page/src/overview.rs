@@ -8,6 +8,7 @@ use g7_ide::File;
 use g7_model::chart_in;
 use g7_model::instances::own_instances;
 use g7_model::{Document, Nanos, ProfileName, Switch};
+use g7_rig::Other;
 use serde::Serialize;
 
 use crate::drawing::{opens, sort};
@@ -33,6 +34,21 @@ pub(crate) struct Overview {
     scan_ms: f64,
     plants: Vec<String>,
     tests: Vec<TestRow>,
+    /// The files that it uses, and that those use.
+    uses: Vec<UseRow>,
+    /// The names of those whose texts are to be lent.
+    wants: Vec<String>,
+}
+
+/// A file that was read for another one.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+struct UseRow {
+    /// Its name; of a part of the library, that behind `use`.
+    name: String,
+    library: bool,
+    /// The charts in it.
+    charts: Vec<String>,
 }
 
 /// A switch of the profile.
@@ -116,7 +132,18 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         scan_ms: scan.unwrap_or(SCAN).as_millis(),
         plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
         tests: tests.collect(),
+        uses: uses(file),
+        wants: file.wants().cloned().collect(),
     }
+}
+
+fn uses(file: &File) -> Vec<UseRow> {
+    let row = |o: &Other| UseRow {
+        name: if o.library { o.path.clone() } else { o.source.name.clone() },
+        library: o.library,
+        charts: o.source.document.charts().map(|c| c.name.text.to_string()).collect(),
+    };
+    file.source.others().iter().map(row).collect()
 }
 
 #[inline(never)]

@@ -1,14 +1,15 @@
 //! The open files and runs, and the answers to messages.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use g7_edit::{Gesture, ItemId};
-use g7_ide::File;
 use g7_ide::gestures;
+use g7_ide::{File, Texts};
 use g7_model::{Language, Said, say};
 
 use crate::answer::{self, Answer, Before, Breaks, Style, Text, ok};
-use crate::between::{self, Between, Lent, WHOLE};
+use crate::between::{self, Between, Lent, Shelved, WHOLE};
 use crate::edit::{self, Edited};
 use crate::export::{self, Form, Out};
 use crate::language::{self, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
@@ -30,6 +31,8 @@ pub struct Page {
     proofs: BTreeMap<String, Proof>,
     shown: Shown,
     language: Language,
+    /// The texts of files that open files use.
+    texts: Arc<Texts>,
 }
 
 fn not_open(file: &str) -> Said {
@@ -109,6 +112,7 @@ impl Page {
         file.language = self.language;
         let name = if file.imported { with_ending(&name) } else { name };
         self.files.insert(name.clone(), file);
+        self.shelve(&name, true);
         self.look(name)
     }
 
@@ -124,9 +128,40 @@ impl Page {
         self.runs.get_mut(name).ok_or_else(|| no_run(name))
     }
 
+    /// Lends the text of a file, which has changed, to the open files that use it. A file that was `opened` may use
+    /// others that are open.
+    fn shelve(&mut self, name: &str, opened: bool) {
+        let used = self.files.values().any(|f| f.uses.iter().any(|used| used == name));
+        if used && let Some(file) = self.files.get(name) {
+            Arc::make_mut(&mut self.texts).insert(name.to_owned(), Some(file.text().into()));
+        }
+        if used || opened || self.files.get(name).is_some_and(|f| f.wants().next().is_some()) {
+            self.lend_all();
+        }
+    }
+
+    /// Lends every open file the texts that there are.
+    fn lend_all(&mut self) {
+        // What a file wants may be open; that may want another one.
+        for _ in 0..MOST {
+            let wanted: Vec<String> = self.files.values().flat_map(File::wants).cloned().collect();
+            let texts = Arc::make_mut(&mut self.texts);
+            for (name, file) in wanted.into_iter().filter_map(|w| Some((w.clone(), self.files.get(&w)?))) {
+                texts.insert(name, Some(file.text().into()));
+            }
+            let texts = Arc::clone(&self.texts);
+            if self.files.values_mut().fold(false, |changed, f| f.lend(&texts) || changed) {
+                continue;
+            }
+            break;
+        }
+    }
+
     /// Executes a change of the history.
     fn travel(&mut self, name: &str, back: bool) -> Result<Edited, Said> {
-        edit::travel(name, self.file_mut(name)?, back)
+        let edited = edit::travel(name, self.file_mut(name)?, back)?;
+        self.shelve(name, false);
+        Ok(edited)
     }
 
     /// Does something with a run and answers with what changed.
@@ -152,6 +187,20 @@ impl Answers for Page {
         self.files.remove(&file);
         self.proofs.remove(&file);
         self.shown.forget(&file);
+        // What it was is not what the disk has: those that use it ask again.
+        if Arc::make_mut(&mut self.texts).remove(&file).is_some() {
+            self.lend_all();
+        }
+        Ok(())
+    }
+
+    fn lend(&mut self, files: Vec<Shelved>) -> Result<(), Said> {
+        let texts = Arc::make_mut(&mut self.texts);
+        for Shelved { file, text } in files {
+            let open = self.files.get(&file).map(|f| f.text().to_owned());
+            texts.insert(file, open.or(text).map(Arc::from));
+        }
+        self.lend_all();
         Ok(())
     }
 
@@ -182,11 +231,14 @@ impl Answers for Page {
         let open = self.file_mut(&file)?;
         let splices = inward(open, &splices);
         open.change(&splices, !unit)?;
+        self.shelve(&file, false);
         self.look(file)
     }
 
     fn edit(&mut self, file: String, gesture: Gesture) -> Result<Edited, Said> {
-        edit::edit(&file, self.file_mut(&file)?, &gesture)
+        let edited = edit::edit(&file, self.file_mut(&file)?, &gesture)?;
+        self.shelve(&file, false);
+        Ok(edited)
     }
 
     fn undo(&mut self, file: String) -> Result<Edited, Said> {
@@ -206,7 +258,9 @@ impl Answers for Page {
     }
 
     fn format(&mut self, file: String) -> Result<Edited, Said> {
-        edit::format(&file, self.file_mut(&file)?)
+        let edited = edit::format(&file, self.file_mut(&file)?)?;
+        self.shelve(&file, false);
+        Ok(edited)
     }
 
     fn references(&mut self, file: String, at: usize) -> Result<Vec<(usize, usize)>, Said> {

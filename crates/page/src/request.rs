@@ -5,6 +5,7 @@ use g7_model::Said;
 use serde::Deserialize;
 
 use crate::answer::{Answer, Before, Breaks, Style, Text, ok};
+use crate::between::Shelved;
 use crate::drawing::Wish as Drawing;
 use crate::edit::Edited;
 use crate::export::{Form, Out};
@@ -72,6 +73,9 @@ requests! {
 
     /// Forgets a file.
     fn close(file: String) -> ();
+
+    /// Gives the texts of files that open files use; without a text, it is not there.
+    fn lend(files: Vec<Shelved>) -> ();
 
     /// Chooses the language of the answers: `en`, `fr`, `pt`. A program without the texts in it is given them.
     fn speak(language: String, words: Option<String>) -> ();

@@ -27,5 +27,6 @@ pub use bench::{Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSid
 pub use carry::{Carried, carry};
 pub use error::Error;
 pub use faults::fault;
+pub use g7_library::{PARTS as LIBRARY, Part};
 pub use links::{Other, Reader, named, resolved};
 pub use source::Source;

@@ -28,8 +28,10 @@ const APART: u32 = 1 << 16;
 /// A file that the head uses, or one that such a file uses.
 #[derive(Debug)]
 pub struct Other {
-    /// Its path from the folder of the head; empty for a part of the library.
+    /// Its path from the folder of the head; of a part of the library, its name.
     pub path: String,
+    /// True for a part of the library.
+    pub library: bool,
     /// What was read of it.
     pub source: Arc<Source>,
     /// The `use` line of the head that leads to it first.
@@ -95,10 +97,13 @@ pub fn named(head: &str, path: &str) -> String {
 impl Links {
     /// Reads what the head uses. Files of `before` with the same bytes are kept.
     pub(crate) fn of(head: &Source, before: &Links, read: Reader<'_>) -> Links {
-        let mut loader = Loader { head, before, read, numbers: HashMap::new(), others: Vec::new(), problems: Vec::new() };
+        let mut loader =
+            Loader { head, before, read, numbers: HashMap::new(), others: Vec::new(), problems: Vec::new() };
         let mut ways = vec![loader.uses(&head.document, "", None)];
         while let Some(other) = loader.others.get(ways.len() - 1) {
-            let (source, path, through) = (Arc::clone(&other.source), other.path.clone(), other.through);
+            // A part of the library uses other parts alone; a test holds it to that.
+            let path = if other.library { String::new() } else { other.path.clone() };
+            let (source, through) = (Arc::clone(&other.source), other.through);
             ways.push(loader.uses(&source.document, &path, Some(through)));
         }
         let Loader { others, mut problems, .. } = loader;
@@ -134,7 +139,8 @@ impl Loader<'_, '_> {
         if used.name.text.is_empty() {
             return None;
         }
-        let path = if used.library { Ok(used.name.text.to_string()) } else { resolved(from, &used.name.text) };
+        let path =
+            if used.library { Ok(used.name.text.to_string()) } else { resolved(from, &used.name.text) };
         let found = path.and_then(|path| self.found(used.library, path, through));
         found.map_err(|why| self.refuse(used, why)).ok().flatten()
     }
@@ -153,12 +159,15 @@ impl Loader<'_, '_> {
             return Err(say!("a file uses {MOST_FILES} others at most, with those that they use"));
         }
         let (name, bytes) = if library {
-            (format!("library/{path}.g7"), g7_library::part(&path).ok_or_else(no_part)?.text.as_bytes().to_vec())
+            (
+                format!("library/{path}.g7"),
+                g7_library::part(&path).ok_or_else(no_part)?.text.as_bytes().to_vec(),
+            )
         } else {
             (named(&self.head.name, &path), (self.read)(&path)?)
         };
         let source = self.source(name, bytes);
-        self.others.push(Other { path: if library { String::new() } else { path.clone() }, source, through });
+        self.others.push(Other { path: path.clone(), library, source, through });
         self.numbers.insert((library, path), Some(self.others.len()));
         Ok(Some(self.others.len()))
     }
@@ -174,7 +183,8 @@ impl Loader<'_, '_> {
     }
 
     fn refuse(&mut self, used: &Use, why: Said) {
-        let problem = Problem::new(&codes::BAD_USE, used.name.at.0, say!("`{}` cannot be used: {why}", used.name.text));
+        let problem =
+            Problem::new(&codes::BAD_USE, used.name.at.0, say!("`{}` cannot be used: {why}", used.name.text));
         let names: Vec<&str> = g7_library::PARTS.iter().map(|p| p.name).collect();
         let near = g7_model::similar(&used.name.text, &names).filter(|_| used.library);
         self.problems.push(match near {

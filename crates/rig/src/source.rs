@@ -89,7 +89,7 @@ impl Source {
     #[must_use]
     pub fn linked_like(mut self, other: &Source) -> Source {
         self.link(&mut |path| {
-            let known = other.links.others.iter().find(|o| o.path == path);
+            let known = other.links.others.iter().find(|o| !o.library && o.path == path);
             known.map(|o| o.source.bytes.clone()).ok_or_else(|| say!("it was not read"))
         });
         self
@@ -199,7 +199,8 @@ impl Source {
     /// The range of a span within the text, rounded to whole characters. Of a place in another file, it is the
     /// `use` line that leads there.
     pub fn range(&self, span: Span) -> std::ops::Range<usize> {
-        let span = if span.file == self.id || self.links.others.is_empty() { span } else { self.through(span) };
+        let span =
+            if span.file == self.id || self.links.others.is_empty() { span } else { self.through(span) };
         let floor = |at: u32| {
             let mut at = (at as usize).min(self.text.len());
             while !self.text.is_char_boundary(at) {

@@ -12,7 +12,7 @@ mod members;
 mod named;
 mod walk;
 
-use g7_model::{Document, Span};
+use g7_model::{Document, FileId, Span};
 
 pub use members::{Declared, Kind, Member, Types, values};
 pub use named::{Definition, Unknown, Use, Written};
@@ -22,6 +22,8 @@ pub use named::{Definition, Unknown, Use, Written};
 pub struct References {
     uses: Vec<Use>,
     unknown: Vec<Unknown>,
+    /// The file in which a byte is looked up; in any if there is none.
+    file: Option<FileId>,
 }
 
 impl References {
@@ -30,9 +32,17 @@ impl References {
         self.use_at(offset).map(|u| &u.definition)
     }
 
+    /// The same for a document of several files: bytes are those of this file.
+    #[must_use]
+    pub fn seen_from(mut self, file: FileId) -> References {
+        self.file = Some(file);
+        self
+    }
+
     /// Finds the name at a byte. The byte just after a name counts as part of it.
     pub fn use_at(&self, offset: u32) -> Option<&Use> {
-        let near = self.uses.iter().filter(|u| u.at.start <= offset && offset <= u.at.end);
+        let here = self.uses.iter().filter(|u| self.file.is_none_or(|file| u.at.file == file));
+        let near = here.filter(|u| u.at.start <= offset && offset <= u.at.end);
         near.min_by_key(|u| (offset == u.at.end, u.at.end - u.at.start))
     }
 
@@ -67,7 +77,7 @@ pub fn references(doc: &Document) -> References {
     let (mut uses, unknown) = walk::uses(doc);
     uses.sort_by_key(|u| (u.at, u.before));
     uses.dedup();
-    References { uses, unknown }
+    References { uses, unknown, file: None }
 }
 
 #[cfg(test)]

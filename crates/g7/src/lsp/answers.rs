@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::actions::at;
 use super::open::Open;
-use super::places;
+use super::{places, used};
 
 /// The abilities of the server.
 pub(super) fn capabilities() -> Value {
@@ -106,8 +106,15 @@ pub(super) fn hover(open: &Open, p: &HoverParams) -> Option<Hover> {
 pub(super) fn definition(open: &Open, p: &GotoDefinitionParams) -> Option<Location> {
     let p = &p.text_document_position_params;
     let (file, byte) = at(open, p)?;
-    let declared = references::uses(file, byte).declared?;
-    Some(Location::new(p.text_document.uri.clone(), places::range(file, &declared)))
+    let found = references::uses(file, byte);
+    if let Some(there) = found.elsewhere {
+        let home = file.source.home(there);
+        // A part of the library is no file.
+        let other = file.source.others().iter().find(|o| !o.library && o.source.name == home.name)?;
+        let uri = used::beside(&p.text_document.uri, &other.path)?;
+        return Some(Location::new(uri, places::range_in(home, &there.bytes())));
+    }
+    Some(Location::new(p.text_document.uri.clone(), places::range(file, &found.declared?)))
 }
 
 pub(super) fn references(open: &Open, p: &ReferenceParams) -> Option<Vec<Location>> {

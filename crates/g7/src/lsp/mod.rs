@@ -20,6 +20,7 @@ mod follow;
 mod open;
 mod places;
 mod shows;
+mod used;
 
 use g7_model::{Language, say};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};

@@ -11,7 +11,7 @@ use lsp_types::{
     PublishDiagnosticsParams, TextDocumentContentChangeEvent, Uri,
 };
 
-use super::places;
+use super::{places, used};
 
 /// The open texts, by address.
 #[derive(Default)]
@@ -33,6 +33,14 @@ struct Text {
     file: Result<File, Said>,
 }
 
+impl Text {
+    /// The addresses of the files that it uses.
+    fn uses(&self) -> impl Iterator<Item = Uri> {
+        let names = self.file.as_ref().map_or(&[][..], |f| &f.uses);
+        names.iter().filter_map(|name| used::beside(&self.uri, name))
+    }
+}
+
 impl Open {
     /// No texts, for a reader of this language.
     pub(super) fn in_language(language: g7_model::Language) -> Open {
@@ -52,7 +60,28 @@ impl Open {
             file.language = self.language;
         }
         self.changed.insert(uri.as_str().to_owned());
-        self.texts.insert(uri.as_str().to_owned(), Text { uri, version: document.version, file });
+        self.texts
+            .insert(uri.as_str().to_owned(), Text { uri: uri.clone(), version: document.version, file });
+        self.lend(&uri);
+    }
+
+    /// Lends files the texts that they use: the one at an address, and all that may use that.
+    fn lend(&mut self, about: &Uri) {
+        let heads = self.texts.values().filter(|t| t.uri == *about || t.uses().any(|u| u == *about));
+        let heads: Vec<String> = heads.map(|t| t.uri.as_str().to_owned()).collect();
+        for address in heads {
+            // While a file is lent to, the others can be looked at.
+            let Some(mut text) = self.texts.remove(&address) else { continue };
+            if let Ok(file) = &mut text.file {
+                let before = file.version;
+                let open = |uri: &Uri| Some(self.file(uri)?.text().to_owned());
+                used::lend(file, &text.uri, &open);
+                if file.version != before {
+                    self.changed.insert(address.clone());
+                }
+            }
+            self.texts.insert(address, text);
+        }
     }
 
     pub(super) fn change(&mut self, told: DidChangeTextDocumentParams) {
@@ -64,12 +93,15 @@ impl Open {
             text.file = Err(no);
         }
         self.changed.insert(uri.as_str().to_owned());
+        self.lend(&uri);
     }
 
     pub(super) fn end(&mut self, told: DidCloseTextDocumentParams) {
         let uri = told.text_document.uri;
         self.changed.remove(uri.as_str());
         if self.texts.remove(uri.as_str()).is_some() {
+            // Those that use it see what is on the disk again.
+            self.lend(&uri);
             self.closed.push(uri);
         }
     }

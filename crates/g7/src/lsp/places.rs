@@ -5,6 +5,7 @@ use std::path::PathBuf;
 
 use g7_edit::Splice;
 use g7_ide::{File, Positions};
+use g7_rig::Source;
 use lsp_types::{Position, Range, TextEdit, Uri};
 
 /// A byte of a text as a position.
@@ -22,6 +23,13 @@ pub(super) fn byte(positions: &Positions, text: &str, at: Position) -> usize {
 /// A range of bytes of a file.
 pub(super) fn range(file: &File, bytes: &ops::Range<usize>) -> Range {
     let place = |byte| position(&file.positions, file.text(), byte);
+    Range::new(place(bytes.start), place(bytes.end))
+}
+
+/// A range of bytes of a file that an open one uses.
+pub(super) fn range_in(source: &Source, bytes: &ops::Range<usize>) -> Range {
+    let positions = Positions::new(&source.text);
+    let place = |byte| position(&positions, &source.text, byte);
     Range::new(place(bytes.start), place(bytes.end))
 }
 

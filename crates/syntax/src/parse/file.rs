@@ -2,10 +2,10 @@
 
 use super::Parser;
 use super::marks::Level;
-use g7_iec::constant;
 use crate::lexer::Tok;
 use crate::quote;
 use crate::words;
+use g7_iec::constant;
 use g7_model::{
     Block, Document, Expr, ExprKind, Fix, Function, Item, Name, NamedAction, Path, Problem, Profile,
     ProfileName, Said, Section, Stmt, StmtKind, Switch, TargetPlc, Use, codes, say,
@@ -253,7 +253,9 @@ impl Parser<'_> {
                 self.bump();
                 (Name::new(path, at), false)
             }
-            _ => (self.name(say!("the path of a file in quotes, or the name of a part of the library")), true),
+            _ => {
+                (self.name(say!("the path of a file in quotes, or the name of a part of the library")), true)
+            }
         };
         Use { name, library, at: self.since(start).into() }
     }
