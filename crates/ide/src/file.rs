@@ -39,7 +39,7 @@ pub struct File {
 pub type Texts = BTreeMap<String, Option<Arc<str>>>;
 
 /// The number of an open file in places; those that it uses have others.
-pub(crate) const OWN: FileId = FileId(0);
+pub const OWN: FileId = FileId(0);
 
 /// Greatest length of a text that is opened, in bytes.
 const MOST: usize = 16 << 20;
@@ -277,7 +277,7 @@ impl File {
 
 impl File {
     /// A document with what the files have that this one uses.
-    pub(crate) fn with_uses<'d>(&self, own: &'d Document) -> Cow<'d, Document> {
+    pub fn with_uses<'d>(&self, own: &'d Document) -> Cow<'d, Document> {
         if self.source.others().is_empty() {
             return Cow::Borrowed(own);
         }

@@ -39,6 +39,6 @@ pub mod search;
 pub mod tables;
 pub mod tokens;
 
-pub use file::{File, Readable, Texts, convert};
+pub use file::{File, OWN, Readable, Texts, convert};
 pub use format::format;
 pub use positions::Positions;

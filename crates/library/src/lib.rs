@@ -36,12 +36,14 @@ parts! {
     "debounce"
     "drive"
     "filter"
+    "gemma"
     "hysteresis"
     "pid"
     "ramp"
     "scale"
     "stopwatch"
     "totaliser"
+    "two_hand"
     "valve"
 }
 

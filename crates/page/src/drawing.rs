@@ -5,8 +5,9 @@ use std::collections::HashMap;
 use g7_draw::{End, Look, Options, Picture, Point, Rect};
 use g7_edit::{ChartSort, ItemId, Sort};
 use g7_ide::ids;
-use g7_ide::{File, Readable};
-use g7_model::{ActionKind, Chart, ChartKind, Order, Said, Step, StepKind, Transition, say};
+use g7_ide::{File, Positions, Readable};
+use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Said, Step, StepKind, Transition, say};
+use g7_rig::Source;
 use serde::{Deserialize, Serialize, Serializer};
 
 /// The standard whose symbols are drawn.
@@ -189,7 +190,25 @@ fn same_ends(ends: Option<&[String; 2]>, old: Option<&[String; 2]>) -> bool {
 /// Draws a chart of a file.
 #[inline(never)]
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
+    let find = |c: &&Chart| *c.name.text == *wish.chart;
+    let has = |document: &Document| document.charts().any(|c| find(&c));
     let readable = file.drawn_chart(&wish.chart);
+    let others = file.source.others().iter();
+    match others.filter(|_| !has(readable.document)).find(|o| has(&o.source.document)) {
+        Some(other) => {
+            let Source { document, text, .. } = &*other.source;
+            let readable = Readable { document, text, positions: &Positions::new(text), stale: false };
+            let mut drawn = drawn(readable, wish)?;
+            // A symbol of another file stands where this one uses that.
+            let (from, to) = file.units(other.through);
+            drawn.items.iter_mut().for_each(|item| (item.from, item.to) = (from, to));
+            Ok(drawn)
+        }
+        None => drawn(readable, wish),
+    }
+}
+
+fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
     let options = options(wish);
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart = readable

@@ -4,11 +4,11 @@ use std::collections::HashMap;
 
 use g7_compile::resolve::{of_profile, with_switch};
 use g7_edit::ChartSort;
-use g7_ide::File;
+use g7_ide::{File, OWN};
 use g7_model::chart_in;
 use g7_model::instances::own_instances;
 use g7_model::{Document, Nanos, ProfileName, Switch};
-use g7_rig::Other;
+use g7_rig::{Other, Source};
 use serde::Serialize;
 
 use crate::drawing::{opens, sort};
@@ -84,6 +84,9 @@ struct ChartRow {
     to: usize,
     steps: usize,
     transitions: usize,
+    /// The file in which it stands, if that is another one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    file: Option<String>,
     /// The names of its parameters.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
@@ -119,7 +122,7 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         file: name.to_owned(),
         version: file.version,
         length: file.positions.units(),
-        hash: hash(file.text()),
+        hash: hash(&file.source),
         clean: file.is_clean(),
         imported: file.imported,
         can_undo: file.history.can_undo(),
@@ -174,13 +177,14 @@ const SCAN: Nanos = Nanos::from_millis(10);
 #[inline(never)]
 fn charts(file: &File) -> Vec<ChartRow> {
     let readable = file.drawn();
-    let document = readable.document;
+    let document = &*file.with_uses(readable.document);
     let owners = owners(document);
     let mut instances: HashMap<&str, Vec<String>> = HashMap::new();
     for (name, chart) in own_instances(document) {
         instances.entry(chart).or_default().push(name.to_owned());
     }
     let row = |c: &g7_model::Chart| {
+        let own = c.at.0.file == OWN;
         let (from, to) = if readable.stale { (0, 0) } else { file.units(c.at.0) };
         ChartRow {
             name: c.name.text.to_string(),
@@ -190,6 +194,7 @@ fn charts(file: &File) -> Vec<ChartRow> {
             to,
             steps: c.steps().count(),
             transitions: c.transitions().count(),
+            file: (!own).then(|| file.source.home(c.at.0).name.clone()),
             params: c.params.iter().map(|p| p.name.text.to_string()).collect(),
             instances: instances.get(&*c.name.text).cloned().unwrap_or_default(),
             of: owners.get(&*c.name.text).map(|of| of.map(str::to_owned)),
@@ -213,7 +218,10 @@ fn owners(document: &Document) -> HashMap<&str, [&str; 2]> {
     owners
 }
 
-/// A fingerprint of a text, in hexadecimal.
-pub(crate) fn hash(text: &str) -> String {
-    format!("{:016x}", g7_host::Fnv::of(text.as_bytes()))
+/// A fingerprint of a text and of those that it uses, in hexadecimal.
+pub(crate) fn hash(source: &Source) -> String {
+    let mut hash = g7_host::Fnv::default();
+    let others = source.others().iter().map(|o| &o.source.text);
+    std::iter::once(&source.text).chain(others).for_each(|text| hash.add(text.as_bytes()));
+    format!("{:016x}", hash.value())
 }

@@ -1,6 +1,7 @@
 // The state of the visible drawing, and the operations on it. One drawing is visible at a time; the
 // panels beside it (palette, properties) use the same state.
 import type { OpenFile } from '../lib/files.svelte';
+import { t } from '../lib/i18n';
 import { actionOf, kindOf } from '../lib/ids';
 import { page } from '../lib/page';
 import type { Box, Edited, Gesture } from '../lib/protocol';
@@ -71,9 +72,16 @@ class Editor {
   readonly one: Item | null = $derived(this.selected.length === 1 ? (this.selected[0] ?? null) : null);
   readonly stale: boolean = $derived(this.scene?.drawing.stale ?? false);
 
+  /** The file in which the chart stands, if it is another one: it is changed there. */
+  readonly elsewhere: string | null = $derived(this.file?.look.charts.find((c) => c.name === this.chart)?.file ?? null);
+
   /** Executes a gesture: shows a refusal to the user, selects the new symbols. */
   async apply(gesture: Gesture): Promise<Edited | undefined> {
     const { file } = this;
+    if (this.elsewhere !== null) {
+      shell.say(t('canvas.elsewhere', { name: this.elsewhere }));
+      return undefined;
+    }
     return file ? this.#draw(file, () => file.edit(gesture)) : undefined;
   }
 
@@ -122,6 +130,10 @@ class Editor {
 
   /** Opens the field for editing a text of a symbol. */
   edit(id: string, field?: Field, index?: number): void {
+    if (this.elsewhere !== null) {
+      shell.say(t('canvas.elsewhere', { name: this.elsewhere }));
+      return;
+    }
     const kind = kindOf(id);
     const of = actionOf(id);
     const usual: Field = kind === 't' ? 'receptivity' : kind === 'a' ? 'action' : kind === 'n' ? 'comment' : 'name';

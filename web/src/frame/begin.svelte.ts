@@ -30,7 +30,8 @@ export async function begin(): Promise<void> {
 async function changedOutside({ path, hash }: Changed): Promise<void> {
   shell.folder = (await shell.try(() => server.files())) ?? shell.folder;
   const file = files.find(path);
-  if (!file || file.tag === hash) return;
+  if (!file) return files.outside(path);
+  if (file.tag === hash) return;
   const now = await server.read(path).catch(() => null);
   if (!now || now.text === file.saved) return;
   if (file.text === now.text || !file.changed) {

@@ -4,7 +4,7 @@ import { ChangeSet, type Text } from '@codemirror/state';
 import { local } from './local';
 import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
-import type { Edited, Gesture, Look, Splice } from './protocol';
+import type { Edited, Gesture, Look, Shelved, Splice } from './protocol';
 import { Redraws, type Drawing } from './redrawn';
 import { server } from './server';
 
@@ -97,8 +97,13 @@ export class OpenFile {
   /** Asks for the problems again, in the language that was chosen meanwhile. */
   again(): Promise<void> {
     return this.#turn(async () => {
-      this.look = await page.call({ do: 'look', file: this.name });
+      this.look = await lent(await page.call({ do: 'look', file: this.name }));
     });
+  }
+
+  /** True if it uses the file of this name. */
+  uses(name: string): boolean {
+    return this.look.uses.some((u) => !u.library && u.name === name) || this.look.wants.includes(name);
   }
 
   /** Executes a gesture. */
@@ -178,7 +183,7 @@ export class OpenFile {
     }
     const splices = asSplices(theirs);
     this.text = apply(this.text, splices);
-    this.look = edited;
+    this.look = await lent(edited);
     this.#tell({ splices, origin });
     return edited;
   }
@@ -188,13 +193,37 @@ export class OpenFile {
     for (let next = this.#typed.shift(); next; next = this.#typed.shift()) {
       const splices = asSplices(next.changes);
       if (splices.length === 0) continue;
-      this.look = await page.call({ do: 'splice', file: this.name, splices, unit: next.unit });
+      this.look = await lent(await page.call({ do: 'splice', file: this.name, splices, unit: next.unit }));
     }
   }
 
   #tell(change: TextChange): void {
     this.#listeners.forEach((listener) => listener(change));
+    files.usedChanged(this.name);
   }
+}
+
+/** The texts that were given to the worker because open files use them; null for a file that is not there. */
+const shelf = new Map<string, string | null>();
+
+/** Gives the worker the texts that a file wants, until it has all of them; returns the newest look at the file. */
+async function lent<L extends Look>(look: L): Promise<L> {
+  let now: Look = look;
+  while (now.wants.length > 0) {
+    await shelve(now.wants);
+    now = await page.call({ do: 'look', file: look.file });
+  }
+  return { ...look, ...now };
+}
+
+/** Reads files that others use, and gives them to the worker. */
+async function shelve(names: string[]): Promise<void> {
+  const read = async (file: string): Promise<Shelved> => {
+    const text = await server.read(file).then((f) => f.text).catch(() => null);
+    shelf.set(file, text);
+    return { file, text };
+  };
+  await page.call({ do: 'lend', files: await Promise.all(names.map(read)) });
 }
 
 class Files {
@@ -212,7 +241,7 @@ class Files {
       this.current = known;
       return known;
     }
-    const look = await page.call({ do: 'open', file: name, text });
+    const look = await lent(await page.call({ do: 'open', file: name, text }));
     if (look.imported) text = (await page.call({ do: 'text', file: look.file })).text;
     const file = new OpenFile(look, text);
     file.saved = look.imported ? null : saved;
@@ -249,6 +278,30 @@ class Files {
     local.put(file.name, null);
     if (server.writes) void server.dropDraft(file.name).catch(() => undefined);
     await page.call({ do: 'close', file: file.name });
+    this.usedChanged(file.name);
+  }
+
+  #soon = new Map<string, ReturnType<typeof setTimeout>>();
+
+  /** Looks again, a little later, at the open files that use one that has changed. */
+  usedChanged(name: string): void {
+    clearTimeout(this.#soon.get(name));
+    const heads = this.list.filter((f) => f.name !== name && f.uses(name));
+    if (heads.length === 0) return;
+    this.#soon.set(name, setTimeout(() => heads.forEach((f) => void f.again()), 200));
+  }
+
+  /** Takes the new text of a file of the folder that is not open, for those that use it. */
+  async outside(name: string): Promise<void> {
+    if (!this.list.some((f) => f.uses(name))) return;
+    await shelve([name]);
+    this.usedChanged(name);
+  }
+
+  /** The texts of the files that a file uses, for a run of the server. */
+  lentTo(file: OpenFile): Shelved[] {
+    const names = file.look.uses.filter((u) => !u.library).map((u) => u.name);
+    return names.map((name) => ({ file: name, text: this.find(name)?.text ?? shelf.get(name) ?? null }));
   }
 }
 

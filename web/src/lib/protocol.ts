@@ -77,6 +77,8 @@ export type ChartRow = {
   to: number;
   steps: number;
   transitions: number;
+  /** The file in which it stands, if that is another one. */
+  file?: string;
   /** The names of its parameters. */
   params?: Array<string>;
   /** Its instances that have a name of their own. */
@@ -144,6 +146,10 @@ export type Edited = {
   scan_ms: number;
   plants: Array<string>;
   tests: Array<TestRow>;
+  /** The files that it uses, and that those use. */
+  uses: Array<UseRow>;
+  /** The names of those whose texts are to be lent. */
+  wants: Array<string>;
 };
 
 export type Failure = {
@@ -533,6 +539,10 @@ export type Look = {
   scan_ms: number;
   plants: Array<string>;
   tests: Array<TestRow>;
+  /** The files that it uses, and that those use. */
+  uses: Array<UseRow>;
+  /** The names of those whose texts are to be lent. */
+  wants: Array<string>;
 };
 
 /** The lines of a text, from 0, that belong to a symbol. */
@@ -696,6 +706,14 @@ export type Sent = Kept | Alike | Item;
 /** How grave a problem is. */
 export type Severity = 'error' | 'warning';
 
+/** A file that another one uses. */
+export type Shelved = {
+  /** Its name. */
+  file: string;
+  /** Its text; none if it is not there. */
+  text?: string | null;
+};
+
 /** A value of the plant's picture. */
 export type Show = boolean | number | string;
 
@@ -811,6 +829,15 @@ export type Text = { text: string };
 /** A language of controllers. */
 export type Tongue = 'st' | 'il' | 'ld';
 
+/** A file that was read for another one. */
+export type UseRow = {
+  /** Its name; of a part of the library, that behind `use`. */
+  name: string;
+  library: boolean;
+  /** The charts in it. */
+  charts: Array<string>;
+};
+
 /** The classes of variables. */
 export type VariableClass = 'input' | 'output' | 'var' | 'const';
 
@@ -865,6 +892,8 @@ export interface Requests {
   open: { file: string; text: string };
   /** Forgets a file. */
   close: { file: string };
+  /** Gives the texts of files that open files use; without a text, it is not there. */
+  lend: { files: Array<Shelved> };
   /** Chooses the language of the answers: `en`, `fr`, `pt`. A program without the texts in it is given them. */
   speak: { language: string; words?: string | null };
   look: { file: string };
@@ -989,6 +1018,7 @@ export interface Requests {
 export interface Answers {
   open: Look;
   close: null;
+  lend: null;
   speak: null;
   look: Look;
   text: Text;

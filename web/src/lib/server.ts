@@ -2,7 +2,7 @@
 // come from one file beside the page, and nothing is written.
 import type { Wishes } from '../operator/told';
 import { opened, Refused, type Door, type Message, type RunName } from './page';
-import type { Answers, Started } from './protocol';
+import type { Answers, Shelved, Started } from './protocol';
 import { prefs } from './prefs.svelte';
 import { session } from './session.svelte';
 
@@ -198,7 +198,7 @@ class Server implements Door {
   }
 
   /** Sends a message to a shared run, or to the server itself. */
-  call<N extends keyof WithText>(message: { do: N; text: string } & Message<N>): Promise<WithText[N]>;
+  call<N extends keyof WithText>(message: { do: N; text: string; lent: Shelved[] } & Message<N>): Promise<WithText[N]>;
   call<N extends RunName>(message: { do: N } & Message<N>): Promise<Answers[N]>;
   call<N extends keyof Own>(message: { do: N } & Own[N]['asked']): Promise<Own[N]['told']>;
   async call(message: object): Promise<unknown> {

@@ -119,7 +119,7 @@ export async function named(file: OpenFile, state: EditorState, at: number): Pro
   const same = (row: { from: number; to: number }) => places.some(([from, to]) => row.from <= from && to <= row.to && row.to - row.from < 200);
   const step = symbols.steps.find(same);
   const variable = step ? undefined : symbols.variables.find(same);
-  const heads = file.look.charts.map((c) => ({ name: c.name, from: state.doc.sliceString(c.from, c.to).indexOf(c.name) + c.from }));
+  const heads = file.look.charts.filter((c) => !c.file).map((c) => ({ name: c.name, from: state.doc.sliceString(c.from, c.to).indexOf(c.name) + c.from }));
   const chart = step || variable ? undefined : heads.find((c) => places.some(([from, to]) => from <= c.from && c.from < to));
   const row = step ?? variable;
   const declared = (row ? places.find(([from, to]) => row.from <= from && to <= row.to) : places.find(([from]) => chart && from <= chart.from)) ?? here;

@@ -10,7 +10,7 @@ export interface Group {
 export function sections(look: Look, text: string): Group[] {
   const plants = look.plants.map((name) => ({ name, at: Math.max(0, text.search(new RegExp(`^\\s*plant\\s+\`?${escaped(name)}`, 'm'))) }));
   const groups: Group[] = [
-    { title: 'app.charts', rows: look.charts.map((c) => ({ name: c.name, at: c.from })) },
+    { title: 'app.charts', rows: look.charts.filter((c) => !c.file).map((c) => ({ name: c.name, at: c.from })) },
     { title: 'text.plants', rows: plants },
     { title: 'text.tests', rows: look.tests.map((test) => ({ name: test.name, at: test.from })) },
   ];

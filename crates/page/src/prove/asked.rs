@@ -40,7 +40,7 @@ pub(crate) struct Proof {
 
 /// Searches for the answers that are still open. `known` are those of an earlier call.
 pub(crate) fn prove(file: &File, known: Option<Proof>, limits: Limits) -> (Proof, Report) {
-    let hash = hash(file.text());
+    let hash = hash(&file.source);
     let mut proof = known.filter(|p| p.hash == hash).unwrap_or_else(|| begin(file, hash));
     let Some(asked) = &proof.asked else {
         let report = Report::refused(&proof.hash);

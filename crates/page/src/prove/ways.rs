@@ -58,7 +58,7 @@ struct Added {
 
 /// The ways on from a claim that a run refutes.
 pub(crate) fn ways(file: &File, wish: &Wish) -> Result<Ways, Said> {
-    let asked = questions(file).filter(|_| hash(file.text()) == wish.hash);
+    let asked = questions(file).filter(|_| hash(&file.source) == wish.hash);
     let asked = asked.ok_or_else(|| say!("the text has changed since; ask again"))?;
     if let Some(question) = asked.questions.get(wish.question) {
         let model = Model::new(&asked.compiled, asked.assume.clone());

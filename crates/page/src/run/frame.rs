@@ -5,6 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use g7_compile::plant::Binding;
 use g7_engine::{Program, State};
 use g7_host::{Value, read_text};
+use g7_ide::OWN;
 use g7_ide::ids;
 use g7_model::{Nanos, Type};
 use g7_rig::{Activity, Item, Role};
@@ -81,8 +82,9 @@ fn halted(run: &Run) -> Option<Halted> {
     Some(Halted {
         what: run.bench.halt(run.watched(), halt).in_language(run.language),
         ids: at.and_then(|at| ids::at(&run.document, at)).map(|t| t.id()).into_iter().collect(),
-        from: at.map(|at| unit(at.start)),
-        to: at.map(|at| unit(at.end)),
+        // A place in a file that this one uses has no units here.
+        from: at.filter(|at| at.file == OWN).map(|at| unit(at.start)),
+        to: at.filter(|at| at.file == OWN).map(|at| unit(at.end)),
     })
 }
 

@@ -41,6 +41,8 @@ pub(crate) struct Run {
     /// The document from which it was compiled.
     pub(super) document: Arc<Document>,
     pub(super) text: Arc<str>,
+    /// The fingerprint of the text and of those that it uses.
+    pub(super) hash: String,
     pub(super) positions: Arc<Positions>,
     /// The request that started it.
     pub(super) wish: Start,

@@ -119,6 +119,7 @@ pub(crate) fn start(source: &Source, wish: &Start, language: Language) -> Result
         past: Past::new(&runner),
         document: Arc::new(source.whole().clone()),
         text: source.text.as_str().into(),
+        hash: crate::overview::hash(source),
         positions: Arc::new(Positions::new(&source.text)),
         wish: wish.without_moves(),
         viewed: None,
@@ -207,7 +208,7 @@ impl Run {
             transitions: self.places.transitions().to_vec(),
             plant: bench.plant.as_ref().map(|p| p.name.clone()),
             view,
-            hash: crate::overview::hash(&self.text),
+            hash: self.hash.clone(),
             breaks: self.break_ids(),
             frame,
         }

@@ -54,6 +54,7 @@ impl Run {
         (self.bench, self.document, self.runner, self.recording) = (new, document, carried.runner, recording);
         self.places = places;
         self.text = source.text.as_str().into();
+        self.hash = crate::overview::hash(source);
         self.positions = Arc::new(Positions::new(&source.text));
         self.breaks = Breaks::default();
         self.set_breaks(&ids);

@@ -2,6 +2,7 @@ import type { Words } from '../i18n';
 
 export const canvas = {
   'canvas.name': ['Drawing of chart {name}', 'Dessin du grafcet {name}', 'Desenho do grafcet {name}'],
+  'canvas.elsewhere': ['This chart stands in {name}: change it there', 'Ce grafcet se trouve dans {name} : modifiez-le là-bas', 'Este grafcet está em {name}: altere-o aí'],
   'canvas.step': ['Step {name}', 'Étape {name}', 'Etapa {name}'],
   'canvas.initialStep': ['Initial step {name}', 'Étape initiale {name}', 'Etapa inicial {name}'],
   'canvas.macro': ['Macro-step {name}', 'Macro-étape {name}', 'Macroetapa {name}'],
