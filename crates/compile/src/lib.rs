@@ -26,7 +26,7 @@ use g7_model::{Document, Problem, Span, codes, say};
 
 pub use held::Held;
 pub use references::{Definition, References, references};
-pub use stages::{Compiled, compile, compile_as, compile_with};
+pub use stages::{Compiled, compile, compile_as, compile_with, is_part};
 
 /// Returns the problems of a document and of its plants, in the order of the text. Plants are
 /// checked only if the charts that they drive compile.

@@ -168,7 +168,7 @@ fn compile_charts(
 }
 
 /// True for a document that runs nothing, but has what a file that uses it can run: there it is used.
-fn is_part(written: &Document) -> bool {
+pub fn is_part(written: &Document) -> bool {
     let runs = |i: &Item| match i {
         Item::Chart(c) => c.params.is_empty(),
         Item::Instance(_) | Item::Pre(..) | Item::Post(..) | Item::Plant(_) | Item::Test(_) => true,

@@ -10,6 +10,7 @@ use g7_model::say;
 
 use crate::failure::{Failure, raw};
 use crate::message::wrote;
+use crate::project::Project;
 
 /// Longest file that is read; the parser's own limit is lower.
 const LONGEST: u64 = 64 << 20;
@@ -122,7 +123,7 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
     Ok(())
 }
 
-/// The chart to run: the given file, or in a folder `chart.g7` or the only .g7 file; if there is none, the same
+/// The chart to run: the given file, or in a folder that of the project, `chart.g7` or the only .g7 file; if there is none, the same
 /// below.
 pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     let folder = match fs::metadata(path) {
@@ -132,6 +133,10 @@ pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     };
     if !folder {
         return Ok(path.to_path_buf());
+    }
+    let project = Project::of(path).and_then(|p| p.map_or(Ok(None), |p| p.main(path)));
+    if let Some(main) = project.map_err(Failure::Usage)? {
+        return Ok(main);
     }
     let chart = path.join("chart.g7");
     if chart.is_file() {

@@ -43,6 +43,7 @@ mod origin;
 mod plant;
 mod post;
 mod progress;
+mod project;
 mod prove;
 mod report;
 mod run;

@@ -10,10 +10,8 @@ use g7_model::{Said, say};
 
 use crate::failure::raw;
 use crate::files;
+use crate::project::{self, Project};
 use crate::sources::Source;
-
-/// The file that marks the folder of a project.
-pub(crate) const PROJECT: &str = "g7.toml";
 
 /// Links a chart to the files that it uses.
 pub(crate) fn link(source: &mut Source, path: &Path) {
@@ -23,14 +21,19 @@ pub(crate) fn link(source: &mut Source, path: &Path) {
         _ => PathBuf::from("."),
     };
     let root = root(&folder);
-    source.link(&mut |used| within(&root, &folder.join(used)));
+    source.link(&mut |used| within(root.as_deref().map_err(Clone::clone)?, &folder.join(used)));
 }
 
 /// The folder of the project to which a folder belongs.
-pub(crate) fn root(folder: &Path) -> PathBuf {
+///
+/// # Errors
+///
+/// The project file has a mistake.
+pub(crate) fn root(folder: &Path) -> Result<PathBuf, Said> {
     let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
-    let project = whole.ancestors().find(|f| f.join(PROJECT).is_file()).map(Path::to_path_buf);
-    project.unwrap_or(whole)
+    let Some(project) = whole.ancestors().find(|f| f.join(project::FILE).is_file()) else { return Ok(whole) };
+    Project::of(project)?;
+    Ok(project.to_path_buf())
 }
 
 /// The bytes of a file that lies in a folder.

@@ -25,7 +25,9 @@ pub fn ask(document: &Document, profile: Option<ProfileName>) -> (Option<Asked>,
     let (compiled, mut problems) = g7_compile::compile_with(document, profile, &conditions);
     problems.dedup();
     let Some(compiled) = compiled else { return (None, problems) };
-    let mut questions = of_every_chart(document, &compiled);
+    // A part of others runs nothing: they are asked about it.
+    let mut questions =
+        if g7_compile::is_part(document) { Vec::new() } else { of_every_chart(document, &compiled) };
     let assume = of_the_author(open(), &mut questions);
     (Some(Asked { compiled, questions, assume }), problems)
 }

@@ -19,7 +19,7 @@ pub(super) fn lend(file: &mut File, uri: &Uri, open: &dyn Fn(&Uri) -> Option<Str
         return;
     }
     let folder = places::path(uri).and_then(|p| p.parent().map(Path::to_path_buf));
-    let root = folder.as_deref().map(used::root);
+    let root = folder.as_deref().and_then(|folder| used::root(folder).ok());
     let read = |name: &str| -> Option<Arc<str>> {
         let path = folder.as_ref()?.join(name);
         if let Some(text) = address(&path).and_then(|uri| open(&uri)) {

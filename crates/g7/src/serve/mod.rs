@@ -70,6 +70,7 @@ use crate::attendant::Attendant;
 use crate::failure::{Failure, Verdict, raw};
 use crate::message::tell;
 use crate::operator::{Order, Stage};
+use crate::project::Project;
 use crate::station::{self, More, Settings, Station};
 use crate::{audit, files, sources};
 pub(crate) use args::Serve;
@@ -115,14 +116,16 @@ fn shared(
         _ => (args.path.clone(), None),
     };
     let folder = Arc::new(Folder::new(&root, args.read_only).map_err(unreadable)?);
+    let project = Project::of(folder.root()).map_err(Failure::Usage)?.unwrap_or_default();
+    let main = project.main.as_ref().filter(|main| folder.root().join(main).is_file()).cloned();
     let chart = folder.root().join("chart.g7").is_file().then(|| "chart.g7".to_owned());
-    let start = args.start.clone().or(first).or(chart);
+    let start = args.start.clone().or(first).or(main).or(chart);
     if let Some(start) = &start {
         folder.read(start).map_err(|r| Failure::Usage(raw(r.text)))?;
     }
     let page = args.page_dir.as_ref().map(|p| p.canonicalize().map_err(|e| Failure::Read(p.clone(), e)));
     Ok(Arc::new(Inner {
-        title: root.display().to_string(),
+        title: project.name.unwrap_or_else(|| root.display().to_string()),
         start,
         page: page.transpose()?,
         drafts: Drafts::of(folder.root(), state),
