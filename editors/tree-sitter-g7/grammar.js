@@ -65,6 +65,7 @@ module.exports = grammar({
         $.profile,
         $.cycle,
         $.target,
+        $.use,
         $.variable,
         $.chart,
         $.instance,
@@ -94,6 +95,9 @@ module.exports = grammar({
     switch: ($) => choice(...words.switches, seq(kw("bound"), $.number)),
     cycle: ($) => seq(kw("scan"), $.duration),
     target: ($) => seq(kw("target"), alias(choice(...words.targets), $.target_name)),
+
+    // `use 'lib/axis.g7'`, `use debounce`
+    use: ($) => seq(kw("use"), choice(field("path", $.string), field("name", $._name))),
 
     // Variables
 

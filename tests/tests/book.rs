@@ -6,7 +6,8 @@
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
-use g7_model::{FileId, Problem, ProfileName, Severity, StandardFunction};
+use g7_model::{Problem, ProfileName, Severity, StandardFunction};
+use g7_rig::Source;
 use g7_tests::book::{assemble, blocks};
 use g7_tests::generated::cases::Folder;
 use g7_tests::{engine, replay, subject};
@@ -57,10 +58,18 @@ fn blocks(page: &str) -> Vec<(usize, String, String)> {
     found
 }
 
+/// Reads a chart of the book. It can use the parts of the library, and no file.
+fn read(text: &str) -> Source {
+    let mut source = Source::native("book.g7", text.as_bytes().to_vec(), 0);
+    source.link(&mut |path| panic!("{path} is no file of the book"));
+    source
+}
+
 /// All problems of a document: syntax, charts, plants.
 fn problems(text: &str) -> Vec<Problem> {
-    let (doc, mut problems) = g7_syntax::parse(text, FileId::default());
-    problems.append(&mut g7_compile::check(&doc));
+    let source = read(text);
+    let mut problems = source.read_problems();
+    problems.extend(source.about(g7_compile::check(source.whole())));
     problems
 }
 
@@ -111,8 +120,7 @@ fn charts_compile_and_wrong_ones_do_not() {
 
 /// True if a chart without problems faults in its first scans.
 fn faults(chart: &str) -> bool {
-    let (doc, _) = g7_syntax::parse(chart, FileId::default());
-    let Some(compiled) = g7_compile::compile(&doc).0 else { return true };
+    let Some(compiled) = g7_compile::compile(read(chart).whole()).0 else { return true };
     let mut state = g7_engine::State::new(&compiled.program);
     let inputs = compiled.program.tables().inputs;
     let words = state.words().get(inputs.start as usize..inputs.end as usize).unwrap_or(&[]).to_vec();

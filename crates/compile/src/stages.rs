@@ -54,7 +54,8 @@ pub fn compile_with(
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
     let (typed, mut undone) = declared(doc);
-    undone.extend(doc.uses().map(unread_file));
+    // A name that is missing was told by the parser.
+    undone.extend(doc.uses().filter(|used| !used.name.text.is_empty()).map(unread_file));
     let (instances, mut wrong) = instantiated(&typed);
     undone.append(&mut wrong);
     let (composed, mut wrong) = decomposed(&instances);

@@ -192,6 +192,43 @@ fn a_new_name_goes_into_the_io_files_of_the_chart() {
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("chart.io.toml")), "{refused}");
 }
 
+#[test]
+fn names_lead_into_the_files_that_are_used() {
+    let folder = common::Folder::with("");
+    let uri = |name: &str| format!("file://{}", folder.path(name).display());
+    folder.write("lib/io.g7", "input go : BOOL\noutput V : BOOL\n");
+    let text = "use 'lib/io.g7'\nuse debounce\n\nchart Main {\n  initial step 0\n  step 1 { N V }\n  0 -> 1 when go\n  1 -> 0 when not go\n}\n\nvar d : Debounce\n\npre {\n  d(raw := go)\n}\n";
+    let mut editor = Editor::open(&uri("chart.g7"), text);
+    assert_eq!(editor.problems()["diagnostics"], json!([]));
+    let at = |editor: &mut Editor, method: &str, line: u32, character: u32| {
+        let place = json!({
+            "textDocument": { "uri": uri("chart.g7") }, "position": { "line": line, "character": character },
+        });
+        editor.ask(method, place)
+    };
+    let declared = at(&mut editor, "textDocument/definition", 6, 15);
+    assert_eq!((&declared["uri"], &declared["range"]), (&json!(uri("lib/io.g7")), &range(0, 6, 8)));
+    assert_eq!(at(&mut editor, "textDocument/definition", 10, 10), json!(null), "the library is no file");
+    let hover = at(&mut editor, "textDocument/hover", 6, 15);
+    assert!(hover["contents"]["value"].as_str().is_some_and(|t| t.contains("input go : BOOL")), "{hover}");
+    let rename = json!({
+        "textDocument": { "uri": uri("chart.g7") }, "position": { "line": 6, "character": 15 }, "newName": "x",
+    });
+    let refused = editor.answer("textDocument/rename", rename);
+    assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("lib/io.g7:1:7")), "{refused}");
+    let choices = at(&mut editor, "textDocument/completion", 1, 4);
+    assert!(choices.to_string().contains("two_hand"), "{choices}");
+    // What another text becomes in the editor counts at once, saved or not.
+    let mut editor = editor.opened(&uri("lib/io.g7"), "input og : BOOL\noutput V : BOOL\n");
+    let told = [editor.problems(), editor.problems()];
+    let of_head = told.iter().find(|t| t["uri"] == uri("chart.g7")).expect("the head is told anew");
+    assert_eq!(of_head["diagnostics"][0]["code"], "G0202", "{of_head}");
+    editor.tell("textDocument/didClose", json!({ "textDocument": { "uri": uri("lib/io.g7") } }));
+    let told = [editor.problems(), editor.problems()];
+    let of_head = told.iter().find(|t| t["uri"] == uri("chart.g7")).expect("the head is told anew");
+    assert_eq!(of_head["diagnostics"], json!([]), "the disk counts again");
+}
+
 /// A server of the page that ends with the test.
 struct Served(Child);
 

@@ -19,7 +19,7 @@ fn put_chart(d: &mut Draft<'_>, chart: Chart) {
 
 /// True for items that stand before the charts.
 fn is_head(item: &Item) -> bool {
-    matches!(item, Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Var(_))
+    matches!(item, Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Use(_) | Item::Var(_))
 }
 
 fn new_chart(d: &mut Draft<'_>, kind: ChartKind, name: &str) -> Chart {

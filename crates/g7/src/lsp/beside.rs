@@ -27,7 +27,7 @@ pub(super) fn renamed(
         return Ok(Vec::new());
     }
     let after = spliced(file.text(), splices).ok_or_else(|| say!("the change does not fit the text"))?;
-    let benches = bench(file.text()).zip(bench(&after));
+    let benches = bench(file, file.text()).zip(bench(file, &after));
     let mut changes = Vec::new();
     for (io, text) in io_files {
         let Some((old, new)) = &benches else {
@@ -69,9 +69,9 @@ fn io_files(chart: &Path) -> Vec<(String, String)> {
     names.iter().filter(mine).filter_map(read).collect()
 }
 
-/// The chart with its names, without its plant; `None` if it has errors.
-fn bench(text: &str) -> Option<Bench> {
-    let source = Source::native("chart.g7", text.as_bytes().to_vec(), 0);
+/// The chart of a file with its names, with this text, without its plant; `None` if it has errors.
+fn bench(file: &File, text: &str) -> Option<Bench> {
+    let source = Source::native(&file.source.name, text.as_bytes().to_vec(), 0).linked_like(&file.source);
     let options = Options { plant: Some("none"), ..Options::default() };
     g7_rig::build(&source, &options).ok()?.0
 }

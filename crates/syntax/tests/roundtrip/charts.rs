@@ -9,7 +9,7 @@ use g7_model::{
     Action, ActionKind, Array, Block, Body, BodyLang, Chart, ChartItem, ChartKind, Composed, Document, Expr,
     ExprKind, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Note, Order, Param, Path,
     Place, Profile, ProfileName, Qualifier, Section, Situation, Span, Step, StepKind, Stmt, StmtKind, Switch,
-    Target, TargetPlc, Transition, Type, VarDecl, VarKind, Work,
+    Target, TargetPlc, Transition, Type, Use, VarDecl, VarKind, Work,
 };
 use proptest::prelude::*;
 
@@ -308,6 +308,13 @@ fn instance() -> impl Strategy<Value = Instance> {
     })
 }
 
+/// A file by its path, which may be any text, or a part of the library by its name.
+fn used() -> impl Strategy<Value = Use> {
+    let path = text().prop_map(|path| (Name::new(path, Span::default()), false));
+    let part = name().prop_map(|name| (name, true));
+    prop_oneof![path, part].prop_map(|(name, library)| Use { name, library, at: at() })
+}
+
 fn item() -> impl Strategy<Value = Item> {
     let profile = (prop::sample::select(ProfileName::ALL.to_vec()), prop::collection::vec(switch(), 0..3))
         .prop_map(|(name, switches)| {
@@ -321,6 +328,7 @@ fn item() -> impl Strategy<Value = Item> {
         1 => profile,
         1 => duration().prop_map(|time| Item::Cycle(time, at())),
         1 => prop::sample::select(TargetPlc::ALL.to_vec()).prop_map(|t| Item::Target(t, at())),
+        1 => used().prop_map(Item::Use),
         3 => variable().prop_map(Item::Var),
         4 => chart().prop_map(Item::Chart),
         2 => instance().prop_map(Item::Instance),

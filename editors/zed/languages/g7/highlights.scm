@@ -48,8 +48,8 @@
   "plant" "post" "pre" "priority" "profile" "prove" "pulse" "rate"
   "reachable" "release" "repeat" "restart" "retain" "return" "safe" "scan"
   "section" "seed" "set" "st" "state" "step" "struct" "target"
-  "task" "test" "then" "to" "transition" "type" "until" "var"
-  "view" "wait" "when" "while" "with" "within"
+  "task" "test" "then" "to" "transition" "type" "until" "use"
+  "var" "view" "wait" "when" "while" "with" "within"
 ] @keyword
 
 [

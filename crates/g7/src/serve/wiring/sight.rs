@@ -64,7 +64,11 @@ impl Sight {
         };
         let text = String::from_utf8(found.clone().unwrap_or_default())
             .map_err(|_| Refusal::bad(say!("`{io}` is not UTF-8 text: mend it in a text editor first")))?;
-        let source = Source::new(&chart.path, bytes, 0);
+        let mut source = Source::new(&chart.path, bytes, 0);
+        source.link(&mut |path| {
+            let read = shared.folder.read(&g7_rig::named(&chart.path, path));
+            read.map_err(|refusal| refusal.text)
+        });
         let options = Options { plant: Some("none"), ..Options::default() };
         let (bench, of_chart) = g7_rig::build(&source, &options).map_err(|why| Refusal::bad(why.said()))?;
         let (setup, mut problems) = setup::read(&text, FileId(1));
