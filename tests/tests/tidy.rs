@@ -25,6 +25,7 @@ type Arrows = (&'static str, &'static [&'static str], Option<&'static [&'static 
 /// An arrow that is not here is not allowed.
 const ALLOWED: &[Arrows] = &[
     ("say", &[], Some(&[])),
+    ("library", &[], Some(&[])),
     ("model", &["g7-say"], Some(&[])),
     // It runs in the plant: nothing it did not bring but the functions of `libm`.
     ("engine", &[], Some(&["libm"])),
@@ -56,7 +57,7 @@ const ALLOWED: &[Arrows] = &[
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde", "ts-rs"])),
     (
         "rig",
-        &["g7-model", "g7-syntax", "g7-exchange", "g7-engine", "g7-compile", "g7-host"],
+        &["g7-library", "g7-model", "g7-syntax", "g7-exchange", "g7-engine", "g7-compile", "g7-host"],
         Some(&["thiserror"]),
     ),
     (

@@ -9,7 +9,6 @@
 //! All keys may be left out; another key is an error.
 
 use std::fs;
-use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use g7_model::{Said, say};
@@ -41,10 +40,11 @@ impl Project {
     pub(crate) fn of(folder: &Path) -> Result<Option<Project>, Said> {
         let path = folder.join(FILE);
         let told = |why: Said| say!("{}: {why}", raw(path.display()));
-        let text = match fs::read_to_string(&path) {
-            Err(e) if e.kind() == ErrorKind::NotFound => return Ok(None),
-            text => text.map_err(|e| told(raw(e)))?,
-        };
+        if !path.is_file() {
+            return Ok(None);
+        }
+        let bytes = fs::read(&path).map_err(|e| told(raw(e)))?;
+        let text = String::from_utf8(bytes).map_err(|e| told(raw(e)))?;
         let project: Project = toml::from_str(&text).map_err(|e| told(raw(e.to_string().trim_end())))?;
         let own = env!("CARGO_PKG_VERSION");
         if let Some(wanted) = &project.g7 {

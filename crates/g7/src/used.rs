@@ -4,22 +4,23 @@
 //! the chart. A link that leads out of it is not followed.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 use g7_model::{Said, say};
+use g7_rig::Source;
 
 use crate::failure::raw;
 use crate::files;
 use crate::project::{self, Project};
-use crate::sources::Source;
 
 /// Links a chart to the files that it uses.
 pub(crate) fn link(source: &mut Source, path: &Path) {
     let path = if path == Path::new("-") { Path::new("") } else { path };
     let folder = match path.parent() {
-        Some(folder) if folder != Path::new("") => folder.to_path_buf(),
-        _ => PathBuf::from("."),
+        Some(folder) if folder != Path::new("") => folder,
+        _ => Path::new("."),
     };
+    let folder = folder.canonicalize().unwrap_or_else(|_| folder.to_path_buf());
     let root = root(&folder);
     source.link(&mut |used| within(root.as_deref().map_err(Clone::clone)?, &folder.join(used)));
 }
@@ -42,16 +43,34 @@ pub(crate) fn within(root: &Path, path: &Path) -> Result<Vec<u8>, Said> {
         std::io::ErrorKind::NotFound => say!("there is no such file"),
         _ => raw(e),
     };
+    let outside = || {
+        let folder = raw(root.display());
+        say!("it lies outside of the folder {folder}; a file `g7.toml` marks the folder of a project")
+    };
+    // Before the system is asked, so that a chart learns nothing of what lies elsewhere.
+    if !plain(path).starts_with(root) {
+        return Err(outside());
+    }
     let whole = path.canonicalize().map_err(|e| told(&e))?;
     if !whole.starts_with(root) {
-        return Err(say!(
-            "it lies outside of the folder {}; a file `g7.toml` marks the folder of a project",
-            raw(root.display())
-        ));
+        return Err(outside());
     }
     // A pipe or a device could keep the reader waiting.
     if !fs::metadata(&whole).map_err(|e| told(&e))?.is_file() {
         return Err(say!("it is no file"));
     }
-    files::read(&whole).map_err(|e| raw(e))
+    files::read(&whole).map_err(raw)
+}
+
+/// A path without `.` and `..` in it.
+pub(crate) fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => _ = plain.pop(),
+            Component::CurDir => {}
+            part => plain.push(part),
+        }
+    }
+    plain
 }

@@ -218,7 +218,7 @@ fn names_lead_into_the_files_that_are_used() {
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("lib/io.g7:1:7")), "{refused}");
     let choices = at(&mut editor, "textDocument/completion", 1, 4);
     assert!(choices.to_string().contains("two_hand"), "{choices}");
-    // What another text becomes in the editor counts at once, saved or not.
+    // A change of another text counts at once, saved or not.
     let mut editor = editor.opened(&uri("lib/io.g7"), "input og : BOOL\noutput V : BOOL\n");
     let told = [editor.problems(), editor.problems()];
     let of_head = told.iter().find(|t| t["uri"] == uri("chart.g7")).expect("the head is told anew");

@@ -3,6 +3,7 @@
 use crate::words::Told;
 use crate::{
     Action, Arg, Block, Body, Expr, Limits, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type,
+    Use,
 };
 
 /// All of one file.
@@ -476,17 +477,6 @@ pub struct Composed {
     pub at: Place,
 }
 
-/// `use 'lib/axis.g7'`: the items of another file; `use debounce`: those of a part of the library that comes with G7.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Use {
-    /// The path of the file as it is written, or the name of the part.
-    pub name: Name,
-    /// True for a part of the library.
-    pub library: bool,
-    /// Where it stands.
-    pub at: Place,
-}
-
 /// `layout Conveyor { … }`.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Layout {
@@ -540,7 +530,7 @@ impl Document {
         self.items.iter().filter_map(|i| if let Item::Prove(p) = i { Some(p) } else { None })
     }
 
-    /// What the file uses of others, in the order of the text.
+    /// The lines that take in other files, in the order of the text.
     pub fn uses(&self) -> impl Iterator<Item = &Use> {
         self.items.iter().filter_map(|i| if let Item::Use(u) = i { Some(u) } else { None })
     }

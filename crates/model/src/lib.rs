@@ -47,6 +47,7 @@ mod severity;
 mod similar;
 mod span;
 mod types;
+mod uses;
 pub mod visit;
 pub mod visit_mut;
 pub mod words;
@@ -57,7 +58,7 @@ pub use action::{
 pub use chart::{
     Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
     NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
-    Transition, Use, VarDecl, VarKind,
+    Transition, VarDecl, VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_name, element_parts, filled};
 pub use fix::{Fix, TextEdit};
@@ -77,3 +78,4 @@ pub use severity::Severity;
 pub use similar::similar;
 pub use span::{FileId, Place, Span};
 pub use types::{Elementary, FbKind, Holds, Type};
+pub use uses::Use;

@@ -20,7 +20,7 @@ pub const MOST_FILES: usize = 1000;
 /// A file among those that belong together.
 #[derive(Clone, Debug)]
 pub struct Linked<'d> {
-    /// What was read of it.
+    /// Its items.
     pub document: &'d Document,
     /// For each of [`Document::uses`], the number of its file in the list; `None` if that could not be read.
     pub uses: Vec<Option<usize>>,
@@ -61,11 +61,12 @@ impl<'d> Linker<'d> {
         let mut uses = file.uses.iter().copied();
         for item in &file.document.items {
             match item {
-                Item::Use(used) => match uses.next().flatten() {
-                    Some(next) => self.used(number, next, used),
-                    // Its loader has told why.
-                    None => {}
-                },
+                // Where there is no file, its loader has told why.
+                Item::Use(used) => {
+                    if let Some(next) = uses.next().flatten() {
+                        self.used(number, next, used);
+                    }
+                }
                 Item::Test(_) | Item::Plant(_) | Item::Prove(_) if number > 0 => {}
                 Item::Profile(_) | Item::Cycle(..) | Item::Target(..) if number > 0 => {}
                 item => self.items.push(item.clone()),

@@ -1,7 +1,7 @@
 //! The form of answers: `{"ok":…}` or `{"no":"a sentence"}`, and those that are a single text.
 
 use g7_model::Said;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// An answer as JSON, or a sentence that says why there is none.
 pub(crate) type Answer = Result<String, Said>;
@@ -47,4 +47,14 @@ pub(crate) struct Style {
 pub(crate) struct Breaks {
     /// The ids of their symbols.
     pub(crate) ids: Vec<String>,
+}
+
+/// A file that another one uses.
+#[derive(Debug, Deserialize, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
+pub(crate) struct Shelved {
+    /// Its name.
+    pub(crate) file: String,
+    /// Its text; none if it is not there.
+    pub(crate) text: Option<String>,
 }

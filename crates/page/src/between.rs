@@ -17,7 +17,7 @@ use g7_ide::{File, convert};
 use g7_model::{FileId, Language, Problem, Said, Span, codes};
 use serde::{Deserialize, Serialize};
 
-use crate::answer::Answer;
+use crate::answer::{Answer, Shelved};
 use crate::request::Request;
 
 /// True in the program that answers everything itself.
@@ -54,16 +54,6 @@ pub(crate) struct Lent {
     /// The files that it uses.
     #[serde(default)]
     uses: Vec<Shelved>,
-}
-
-/// A file that another one uses.
-#[derive(Debug, Deserialize, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
-pub(crate) struct Shelved {
-    /// Its name.
-    pub(crate) file: String,
-    /// Its text; none if it is not there.
-    pub(crate) text: Option<String>,
 }
 
 impl Lent {

@@ -8,8 +8,8 @@ use g7_ide::gestures;
 use g7_ide::{File, Texts};
 use g7_model::{Language, Said, say};
 
-use crate::answer::{self, Answer, Before, Breaks, Style, Text, ok};
-use crate::between::{self, Between, Lent, Shelved, WHOLE};
+use crate::answer::{self, Answer, Before, Breaks, Shelved, Style, Text, ok};
+use crate::between::{self, Between, Lent, WHOLE};
 use crate::edit::{self, Edited};
 use crate::export::{self, Form, Out};
 use crate::language::{self, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
@@ -142,7 +142,7 @@ impl Page {
 
     /// Lends every open file the texts that there are.
     fn lend_all(&mut self) {
-        // What a file wants may be open; that may want another one.
+        // A file that is wanted may be open, and may want another one.
         for _ in 0..MOST {
             let wanted: Vec<String> = self.files.values().flat_map(File::wants).cloned().collect();
             let texts = Arc::make_mut(&mut self.texts);
@@ -150,10 +150,11 @@ impl Page {
                 texts.insert(name, Some(file.text().into()));
             }
             let texts = Arc::clone(&self.texts);
-            if self.files.values_mut().fold(false, |changed, f| f.lend(&texts) || changed) {
-                continue;
+            // Each file takes them, whether another one has changed or not.
+            let changed = self.files.values_mut().filter_map(|f| f.lend(&texts).then_some(())).count();
+            if changed == 0 {
+                break;
             }
-            break;
         }
     }
 
@@ -187,7 +188,7 @@ impl Answers for Page {
         self.files.remove(&file);
         self.proofs.remove(&file);
         self.shown.forget(&file);
-        // What it was is not what the disk has: those that use it ask again.
+        // The disk may have another text: those that use it ask again.
         if Arc::make_mut(&mut self.texts).remove(&file).is_some() {
             self.lend_all();
         }

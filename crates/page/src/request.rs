@@ -4,8 +4,7 @@
 use g7_model::Said;
 use serde::Deserialize;
 
-use crate::answer::{Answer, Before, Breaks, Style, Text, ok};
-use crate::between::Shelved;
+use crate::answer::{Answer, Before, Breaks, Shelved, Style, Text, ok};
 use crate::drawing::Wish as Drawing;
 use crate::edit::Edited;
 use crate::export::{Form, Out};

@@ -28,5 +28,5 @@ pub use carry::{Carried, carry};
 pub use error::Error;
 pub use faults::fault;
 pub use g7_library::{PARTS as LIBRARY, Part};
-pub use links::{Other, Reader, named, resolved};
-pub use source::Source;
+pub use links::{Reader, named, resolved};
+pub use source::{Other, Source};

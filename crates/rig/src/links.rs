@@ -17,36 +17,13 @@ use std::sync::Arc;
 use g7_model::linked::{Linked, MOST_FILES, linked};
 use g7_model::{Document, FileId, Problem, Said, Severity, Span, Use, codes, say};
 
-use crate::source::Source;
+use crate::source::{Links, Other, Source};
 
 /// The bytes of a file by its path from the folder of the head, or why it cannot be read.
 pub type Reader<'r> = &'r mut dyn FnMut(&str) -> Result<Vec<u8>, Said>;
 
 /// The first number of a file that another one uses lies this far above the number of that.
 const APART: u32 = 1 << 16;
-
-/// A file that the head uses, or one that such a file uses.
-#[derive(Debug)]
-pub struct Other {
-    /// Its path from the folder of the head; of a part of the library, its name.
-    pub path: String,
-    /// True for a part of the library.
-    pub library: bool,
-    /// What was read of it.
-    pub source: Arc<Source>,
-    /// The `use` line of the head that leads to it first.
-    pub through: Span,
-}
-
-/// All that a file uses.
-#[derive(Debug, Default)]
-pub(crate) struct Links {
-    pub(crate) others: Vec<Other>,
-    /// The head with the items of all others.
-    pub(crate) whole: Document,
-    /// What does not go together, and what cannot be read.
-    pub(crate) problems: Vec<Problem>,
-}
 
 /// The path of a file from the folder of the head, as written in the file with the path `from`.
 ///
@@ -94,28 +71,48 @@ pub fn named(head: &str, path: &str) -> String {
     if folder.is_empty() { rest.to_owned() } else { parts.join("/") }
 }
 
-impl Links {
-    /// Reads what the head uses. Files of `before` with the same bytes are kept.
-    pub(crate) fn of(head: &Source, before: &Links, read: Reader<'_>) -> Links {
-        let mut loader =
-            Loader { head, before, read, numbers: HashMap::new(), others: Vec::new(), problems: Vec::new() };
-        let mut ways = vec![loader.uses(&head.document, "", None)];
-        while let Some(other) = loader.others.get(ways.len() - 1) {
-            // A part of the library uses other parts alone; a test holds it to that.
-            let path = if other.library { String::new() } else { other.path.clone() };
-            let (source, through) = (Arc::clone(&other.source), other.through);
-            ways.push(loader.uses(&source.document, &path, Some(through)));
+impl Source {
+    /// Reads the files that this one uses, those that they use, and puts all together. It is done again after a
+    /// change of the text; files whose bytes are the same are not parsed again.
+    pub fn link(&mut self, read: Reader<'_>) {
+        let before = std::mem::take(&mut self.links);
+        if self.document.uses().next().is_some() {
+            self.links = links(self, &before, read);
         }
-        let Loader { others, mut problems, .. } = loader;
-        let documents = std::iter::once(&head.document).chain(others.iter().map(|o| &o.source.document));
-        let files: Vec<Linked<'_>> =
-            documents.zip(ways).map(|(document, uses)| Linked { document, uses }).collect();
-        let (whole, mut wrong) = linked(&files);
-        problems.append(&mut wrong);
-        let of_syntax = others.iter().flat_map(|o| &o.source.problems);
-        problems.extend(of_syntax.filter(|p| p.severity() == Severity::Error).cloned());
-        Links { others, whole, problems }
     }
+
+    /// Links this file to the files that another one uses, without reading them again: a changed text of the same
+    /// file.
+    #[must_use]
+    pub fn linked_like(mut self, other: &Source) -> Source {
+        self.link(&mut |path| {
+            let known = other.links.others.iter().find(|o| !o.library && o.path == path);
+            known.map(|o| o.source.bytes.clone()).ok_or_else(|| say!("it was not read"))
+        });
+        self
+    }
+}
+
+/// Reads what the head uses. Files of `before` with the same bytes are kept.
+fn links(head: &Source, before: &Links, read: Reader<'_>) -> Links {
+    let mut loader =
+        Loader { head, before, read, numbers: HashMap::new(), others: Vec::new(), problems: Vec::new() };
+    let mut ways = vec![loader.uses(&head.document, "", None)];
+    while let Some(other) = loader.others.get(ways.len() - 1) {
+        // A part of the library uses other parts alone; a test holds it to that.
+        let path = if other.library { String::new() } else { other.path.clone() };
+        let (source, through) = (Arc::clone(&other.source), other.through);
+        ways.push(loader.uses(&source.document, &path, Some(through)));
+    }
+    let Loader { others, mut problems, .. } = loader;
+    let documents = std::iter::once(&head.document).chain(others.iter().map(|o| &o.source.document));
+    let files: Vec<Linked<'_>> =
+        documents.zip(ways).map(|(document, uses)| Linked { document, uses }).collect();
+    let (whole, mut wrong) = linked(&files);
+    problems.append(&mut wrong);
+    let of_syntax = others.iter().flat_map(|o| &o.source.problems);
+    problems.extend(of_syntax.filter(|p| p.severity() == Severity::Error).cloned());
+    Links { others, whole: Some(whole), problems }
 }
 
 struct Loader<'l, 'r> {

@@ -1,12 +1,11 @@
 //! Source files: bytes, document and problems; and the conversion from bytes to lines.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use g7_exchange::Format;
 use g7_model::{Document, FileId, Item, Problem, Said, Scenario, Severity, Span, say};
 use g7_syntax::{Marks, Tree};
-
-use crate::links::{Links, Other, Reader};
 
 /// A file that was read.
 #[derive(Debug)]
@@ -28,8 +27,8 @@ pub struct Source {
     pub marks: Marks,
     starts: Vec<usize>,
     id: FileId,
-    /// What it uses, as [`Source::link`] found it.
-    links: Links,
+    /// The files that it uses, if they were read.
+    pub(crate) links: Links,
 }
 
 impl Source {
@@ -75,37 +74,17 @@ impl Source {
         fits
     }
 
-    /// Reads the files that this one uses, those that they use, and puts all together. It is done again after a
-    /// change of the text; files whose bytes are the same are not parsed again.
-    pub fn link(&mut self, read: Reader<'_>) {
-        let before = std::mem::take(&mut self.links);
-        if self.document.uses().next().is_some() {
-            self.links = Links::of(self, &before, read);
-        }
-    }
-
-    /// Links this file to the files that another one uses, without reading them again: a changed text of the same
-    /// file.
-    #[must_use]
-    pub fn linked_like(mut self, other: &Source) -> Source {
-        self.link(&mut |path| {
-            let known = other.links.others.iter().find(|o| !o.library && o.path == path);
-            known.map(|o| o.source.bytes.clone()).ok_or_else(|| say!("it was not read"))
-        });
-        self
-    }
-
     /// The document with the items of all files that this one uses: what is compiled, run and proved. Drawings,
     /// gestures and the printer see [`Source::document`] alone.
     pub fn whole(&self) -> &Document {
-        if self.links.whole.items.is_empty() { &self.document } else { &self.links.whole }
+        self.links.whole.as_ref().unwrap_or(&self.document)
     }
 
     /// Changes what was read without a change of the text.
     pub fn amend(&mut self, change: impl Fn(&mut Document)) {
         change(&mut self.document);
-        if !self.links.whole.items.is_empty() {
-            change(&mut self.links.whole);
+        if let Some(whole) = &mut self.links.whole {
+            change(whole);
         }
     }
 
@@ -238,6 +217,29 @@ impl Source {
         let (line, column) = home.position(home.range(span).start);
         format!("{}:{line}:{column}", home.name)
     }
+}
+
+/// A file that the head uses, or one that such a file uses.
+#[derive(Debug)]
+pub struct Other {
+    /// Its path from the folder of the head; of a part of the library, its name.
+    pub path: String,
+    /// True for a part of the library.
+    pub library: bool,
+    /// The file itself.
+    pub source: Arc<Source>,
+    /// The `use` line of the head that leads to it first.
+    pub through: Span,
+}
+
+/// All that a file uses.
+#[derive(Debug, Default)]
+pub(crate) struct Links {
+    pub(crate) others: Vec<Other>,
+    /// The head with the items of all others; none if it uses no file.
+    pub(crate) whole: Option<Document>,
+    /// Files that cannot be read, and what does not go together.
+    pub(crate) problems: Vec<Problem>,
 }
 
 /// The first bytes of the lines.

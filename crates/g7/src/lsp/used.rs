@@ -1,6 +1,6 @@
 //! The files that open texts use: those that the editor has open as they are there, others from the disk.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::str::FromStr;
 use std::sync::Arc;
 
@@ -18,7 +18,7 @@ pub(super) fn lend(file: &mut File, uri: &Uri, open: &dyn Fn(&Uri) -> Option<Str
     if file.uses.is_empty() {
         return;
     }
-    let folder = places::path(uri).and_then(|p| p.parent().map(Path::to_path_buf));
+    let folder = places::path(uri).and_then(|p| p.parent()?.canonicalize().ok());
     let root = folder.as_deref().and_then(|folder| used::root(folder).ok());
     let read = |name: &str| -> Option<Arc<str>> {
         let path = folder.as_ref()?.join(name);
@@ -43,15 +43,7 @@ pub(super) fn beside(uri: &Uri, name: &str) -> Option<Uri> {
 
 /// The address of a path, without `..` in it.
 fn address(path: &Path) -> Option<Uri> {
-    let mut whole = PathBuf::new();
-    for part in path.components() {
-        match part {
-            std::path::Component::ParentDir => _ = whole.pop(),
-            std::path::Component::CurDir => {}
-            part => whole.push(part),
-        }
-    }
-    let uri = crate::sarif::artifact(whole.to_str()?);
+    let uri = crate::sarif::artifact(used::plain(path).to_str()?);
     Uri::from_str(uri["uri"].as_str()?).ok()
 }
 
@@ -61,11 +53,11 @@ mod tests {
 
     #[test]
     fn a_path_comes_back_from_its_address() {
-        let there = Path::new("/home/é x/a%b.g7");
+        let there = Path::new("/plant/é x/a%b.g7");
         let uri = address(there).expect("it is UTF-8");
-        assert_eq!(uri.as_str(), "file:///home/%C3%A9%20x/a%25b.g7");
+        assert_eq!(uri.as_str(), "file:///plant/%C3%A9%20x/a%25b.g7");
         assert_eq!(places::path(&uri).as_deref(), Some(there));
-        assert_eq!(beside(&uri, "../b.g7").expect("it is there").as_str(), "file:///home/b.g7");
+        assert_eq!(beside(&uri, "../b.g7").expect("it is there").as_str(), "file:///plant/b.g7");
         let untitled = Uri::from_str("untitled:a").expect("an address");
         assert_eq!(places::path(&untitled), None);
     }
