@@ -306,7 +306,7 @@ book:
 	cargo run --quiet --package g7-tests --bin book -- $(BOOK)
 	mdbook build $(BOOK) --dest-dir $(CURDIR)/docs/book/book
 
-## the chronograms of the function blocks, drawn anew for the book
+## the chronograms of the function blocks and of the library, drawn anew for the book
 blocks:
 	cargo run --quiet --package g7-tests --bin book -- pictures
 

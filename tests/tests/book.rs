@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 
 use g7_model::{Problem, ProfileName, Severity, StandardFunction};
 use g7_rig::Source;
-use g7_tests::book::{assemble, blocks};
+use g7_tests::book::{assemble, blocks, library};
 use g7_tests::generated::cases::Folder;
 use g7_tests::{engine, replay, subject};
 
@@ -181,6 +181,18 @@ fn the_chronograms_are_those_of_the_runs() {
         let kept = text(&page.with_file_name(section.picture()));
         assert_eq!(kept, drawn, "{}: draw it again with `make blocks`", section.picture());
         assert!(text(&page).contains(&format!("]({})", section.picture())), "{}", section.picture());
+    }
+}
+
+#[test]
+fn the_pictures_of_the_library_are_those_of_the_runs() {
+    for part in g7_rig::LIBRARY {
+        let page = text(&root().join(library::PAGES).join(format!("{}.md", part.name)));
+        let options = library::options(&page, part.name).unwrap_or_else(|why| panic!("{why}"));
+        let drawn = library::chronogram(&root(), part.name, options).unwrap_or_else(|why| panic!("{why}"));
+        let kept = text(&library::picture(&root(), part.name));
+        assert_eq!(kept, drawn, "{}: draw it again with `make blocks`", part.name);
+        assert!(drawn.matches("g7-name").count() > 1, "{}: lanes", part.name);
     }
 }
 

@@ -5,7 +5,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use g7_tests::book::{assemble, blocks};
+use g7_tests::book::{assemble, blocks, library};
 
 fn main() -> ExitCode {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
@@ -29,6 +29,13 @@ fn pictures(root: &Path) -> Result<(), String> {
     for section in blocks::sections(&text)? {
         let file = page.with_file_name(section.picture());
         std::fs::write(&file, section.chronogram()?).map_err(|e| format!("{}: {e}", file.display()))?;
+    }
+    for part in g7_rig::LIBRARY {
+        let page = root.join(library::PAGES).join(format!("{}.md", part.name));
+        let text = std::fs::read_to_string(&page).map_err(|e| format!("{}: {e}", page.display()))?;
+        let drawn = library::chronogram(root, part.name, library::options(&text, part.name)?)?;
+        let file = library::picture(root, part.name);
+        std::fs::write(&file, drawn).map_err(|e| format!("{}: {e}", file.display()))?;
     }
     Ok(())
 }

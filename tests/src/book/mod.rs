@@ -5,6 +5,7 @@
 #![allow(clippy::disallowed_methods, reason = "it reads the pages")]
 
 pub mod blocks;
+pub mod library;
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
