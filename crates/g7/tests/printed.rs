@@ -59,7 +59,8 @@ fn commands(text: &str) -> BTreeSet<String> {
             fenced = !fenced;
         }
         let bare = line.trim_start();
-        if !bare.starts_with("g7 ") || !(fenced || line.starts_with("  ")) {
+        // `g7 = "0.1"` is a line of a project file.
+        if !bare.starts_with("g7 ") || bare.starts_with("g7 = ") || !(fenced || line.starts_with("  ")) {
             continue;
         }
         let end = [bare.find("  "), bare.find(" #")].into_iter().flatten().min().unwrap_or(bare.len());
