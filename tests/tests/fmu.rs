@@ -377,7 +377,10 @@ fn examples() {
     for file in files.map(|f| f.path()).filter(|p| p.extension().is_some_and(|e| e == "g7")) {
         let text = std::fs::read_to_string(&file).expect("a text");
         if !text.contains("template") {
-            subjects.push(of_text(&file.display().to_string(), &text));
+            let mut source = g7_rig::Source::native("chart.g7", text.into_bytes(), 0);
+            source.link(&mut |used| Ok(std::fs::read(file.with_file_name(used)).expect("it is used")));
+            let whole = g7_syntax::print(source.whole(), None);
+            subjects.push(of_text(&file.display().to_string(), &whole));
         }
     }
     assert!(subjects.len() >= 20, "{} examples", subjects.len());
