@@ -10,10 +10,9 @@ use std::sync::Arc;
 use g7_engine::{Code, Program};
 use g7_model::composed::{Composition, decomposed};
 use g7_model::instances::instantiated;
+use g7_model::linked::unusable;
 use g7_model::named::{Checker, declared, held};
-use g7_model::{
-    Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, Use, codes, say,
-};
+use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
 use crate::{allow, check, ir, lower, resolve};
@@ -54,8 +53,9 @@ pub fn compile_with(
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
     let (typed, mut undone) = declared(doc);
-    // A name that is missing was told by the parser.
-    undone.extend(doc.uses().filter(|used| !used.name.text.is_empty()).map(unread_file));
+    // The caller joins the files before. The parser has reported a line without a name.
+    let unread = doc.uses().filter(|used| !used.name.text.is_empty());
+    undone.extend(unread.map(|used| unusable(used, &say!("it was not read"))));
     let (instances, mut wrong) = instantiated(&typed);
     undone.append(&mut wrong);
     let (composed, mut wrong) = decomposed(&instances);
@@ -69,12 +69,6 @@ pub fn compile_with(
         (Cow::Borrowed(_), Cow::Borrowed(_)) => (compiled, problems),
         _ => (compiled, once(doc, problems)),
     }
-}
-
-/// A file that nobody has put in the place of its `use` line.
-fn unread_file(used: &Use) -> Problem {
-    let what = say!("`{}` cannot be used: {}", used.name.text, say!("it was not read"));
-    Problem::new(&codes::BAD_USE, used.name.at.0, what)
 }
 
 /// The questions with plain names and numbers.

@@ -123,8 +123,8 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
     Ok(())
 }
 
-/// The chart to run: the given file, or in a folder that of the project, `chart.g7` or the only .g7 file; if there is none, the same
-/// below.
+/// The chart to run. For a file, that file. For a folder, the first of these that is there: the chart that its project
+/// file names, `chart.g7`, its only .g7 file, the only `chart.g7` or .g7 file in the folders below.
 pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     let folder = match fs::metadata(path) {
         _ if path == Path::new("-") => return Ok(path.to_path_buf()),
@@ -136,7 +136,7 @@ pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     }
     let project = Project::of(path).and_then(|p| p.map_or(Ok(None), |p| p.main(path)));
     if let Some(main) = project.map_err(Failure::Usage)? {
-        return Ok(main);
+        return Ok(path.join(main));
     }
     let chart = path.join("chart.g7");
     if chart.is_file() {

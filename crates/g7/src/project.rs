@@ -9,7 +9,7 @@
 //! All keys may be left out; another key is an error.
 
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use g7_model::{Said, say};
 use serde::Deserialize;
@@ -26,7 +26,7 @@ pub(crate) struct Project {
     /// The title of the project.
     pub(crate) name: Option<String>,
     /// The path of the chart that runs, from the folder.
-    pub(crate) main: Option<String>,
+    main: Option<String>,
     /// The oldest version of G7 that reads its charts.
     g7: Option<String>,
 }
@@ -39,7 +39,7 @@ impl Project {
     /// The file cannot be read, has a mistake, or asks for a newer G7.
     pub(crate) fn of(folder: &Path) -> Result<Option<Project>, Said> {
         let path = folder.join(FILE);
-        let told = |why: Said| say!("{}: {why}", raw(path.display()));
+        let told = |why: Said| of(folder, why);
         if !path.is_file() {
             return Ok(None);
         }
@@ -66,21 +66,24 @@ impl Project {
         Ok(Some(project))
     }
 
-    /// The chart that runs, if the project names one.
+    /// The path of the chart that runs, from the folder, if the project names one.
     ///
     /// # Errors
     ///
     /// The path leads out of the folder, or is no path of a .g7 file.
-    pub(crate) fn main(&self, folder: &Path) -> Result<Option<PathBuf>, Said> {
+    pub(crate) fn main(&self, folder: &Path) -> Result<Option<String>, Said> {
         let Some(main) = &self.main else { return Ok(None) };
-        let path = g7_rig::resolved("", main).and_then(|path| {
+        let inside = |path: String| {
             if path.starts_with("..") { Err(say!("it lies outside of the folder")) } else { Ok(path) }
-        });
-        let told = |why| {
-            say!("{}: {}", raw(folder.join(FILE).display()), say!("`{}` cannot be used: {why}", raw(main)))
         };
-        Ok(Some(folder.join(path.map_err(told)?)))
+        let unusable = |why| of(folder, say!("`{}` cannot be used: {why}", raw(main)));
+        g7_rig::resolved("", main).and_then(inside).map(Some).map_err(unusable)
     }
+}
+
+/// A mistake of the project file of a folder, with the name of the file.
+fn of(folder: &Path, why: Said) -> Said {
+    say!("{}: {why}", raw(folder.join(FILE).display()))
 }
 
 /// The numbers of a version.

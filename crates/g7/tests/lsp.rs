@@ -218,7 +218,7 @@ fn names_lead_into_the_files_that_are_used() {
     assert!(refused["error"]["message"].as_str().is_some_and(|m| m.contains("lib/io.g7:1:7")), "{refused}");
     let choices = at(&mut editor, "textDocument/completion", 1, 4);
     assert!(choices.to_string().contains("two_hand"), "{choices}");
-    // A change of another text counts at once, saved or not.
+    // The text of another file counts as the editor has it, saved or not.
     let mut editor = editor.opened(&uri("lib/io.g7"), "input og : BOOL\noutput V : BOOL\n");
     let told = [editor.problems(), editor.problems()];
     let of_head = told.iter().find(|t| t["uri"] == uri("chart.g7")).expect("the head is told anew");
@@ -227,6 +227,9 @@ fn names_lead_into_the_files_that_are_used() {
     let told = [editor.problems(), editor.problems()];
     let of_head = told.iter().find(|t| t["uri"] == uri("chart.g7")).expect("the head is told anew");
     assert_eq!(of_head["diagnostics"], json!([]), "the disk counts again");
+    folder.write("lib/io.g7", "input og : BOOL\noutput V : BOOL\n");
+    editor.tell("textDocument/didSave", json!({ "textDocument": { "uri": uri("chart.g7") } }));
+    assert_eq!(editor.problems()["diagnostics"][0]["code"], "G0202", "saving looks at the disk");
 }
 
 /// A server of the page that ends with the test.

@@ -66,7 +66,7 @@ pub fn complete(file: &File, at: usize) -> Completion {
     let readable = file.drawn();
     let prefix = &*text.get(from..byte).unwrap_or("").trim_start_matches('`').to_lowercase();
     let at = u32::try_from(byte).unwrap_or(u32::MAX);
-    let document = file.with_uses(readable.document);
+    let document = file.with_uses(readable);
     let place = Place { text, before, prefix, document: &document, at };
     let mut items = place.choices();
     items.retain(|c| c.label.to_lowercase().contains(prefix));

@@ -276,13 +276,13 @@ impl File {
 }
 
 impl File {
-    /// A document with what the files have that this one uses.
-    pub fn with_uses<'d>(&self, own: &'d Document) -> Cow<'d, Document> {
-        if self.source.others().is_empty() {
-            return Cow::Borrowed(own);
+    /// A document of the file with the items of the files that it uses.
+    pub fn with_uses<'d>(&'d self, own: Readable<'d>) -> Cow<'d, Document> {
+        if !own.stale || self.source.others().is_empty() {
+            return Cow::Borrowed(if own.stale { own.document } else { self.source.whole() });
         }
         let used = self.source.whole().items.iter().filter(|i| i.at().file != OWN);
-        let items = own.items.iter().chain(used).cloned().collect();
+        let items = own.document.items.iter().chain(used).cloned().collect();
         Cow::Owned(Document { items, notes: Vec::new() })
     }
 }

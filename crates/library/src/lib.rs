@@ -1,7 +1,7 @@
-//! The library that comes with G7: parts written in its own language, which a chart takes in with `use debounce`.
+//! The library that comes with G7. Its parts are .g7 files; a chart takes one in with `use debounce`.
 //!
-//! The texts stand in `library/` of the repository, their tests in `library/tests/`, and each part has a page in
-//! the book. Texts alone: whoever links files reads them (`rig`).
+//! The files are in the folder `library/` of the repository, with their tests in `library/tests/` and a page of the book
+//! for each. This crate only holds their texts; `rig` reads them.
 #![no_std]
 #![forbid(unsafe_code)]
 

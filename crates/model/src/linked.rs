@@ -1,4 +1,4 @@
-//! Puts the items of other files in the place of the `use` lines that lead to them.
+//! Replaces each `use` line by the items of the file that it names.
 //!
 //! ```text
 //! loader -> a Document for each file -> here -> one Document -> compile, verify, writers of other formats
@@ -6,27 +6,27 @@
 //!
 //! # What must hold
 //!
-//! - The items of a file stand once, where the first `use` leads to it; so a file that two others use is no
-//!   contradiction.
-//! - Every place keeps its file. Nothing here knows how a path is read.
-//! - Tests, plants, properties and the notes of a used file stay with it: they speak of that file alone.
-//! - A setting of a used file (profile, scan time, target) is that of the whole, or it is a problem.
+//! - The items of a file appear once, in the place of the first `use` line that names it, however many files use it.
+//! - Every item keeps its place, with its file ([`Span::file`]).
+//! - Tests, plants, properties and notes of a used file are left out: they are about that file alone.
+//! - The profile, the scan time and the target of a used file must be those of the head.
 
 use crate::{Document, Item, Problem, Profile, Said, Span, Use, codes, say};
 
 /// The greatest number of files that one file uses, with those that they use.
 pub const MOST_FILES: usize = 1000;
 
-/// A file among those that belong together.
+/// The head, or a file that it uses.
 #[derive(Clone, Debug)]
 pub struct Linked<'d> {
     /// Its items.
     pub document: &'d Document,
-    /// For each of [`Document::uses`], the number of its file in the list; `None` if that could not be read.
+    /// For each `use` line, in the order of [`Document::uses`], the position of its file in the list of files; `None` if
+    /// the file could not be read.
     pub uses: Vec<Option<usize>>,
 }
 
-/// The whole of which the first file is the head, and what does not go together.
+/// The document of all files together, the first of which is the head. Also returns circles and settings that differ.
 pub fn linked(files: &[Linked<'_>]) -> (Document, Vec<Problem>) {
     let Some(head) = files.first() else { return (Document::default(), Vec::new()) };
     let mut linker = Linker {
@@ -45,11 +45,16 @@ pub fn linked(files: &[Linked<'_>]) -> (Document, Vec<Problem>) {
     (Document { items: linker.items, notes: head.document.notes.clone() }, linker.problems)
 }
 
+/// The problem of a `use` line whose file is not there to be joined.
+pub fn unusable(used: &Use, why: &Said) -> Problem {
+    Problem::new(&codes::BAD_USE, used.name.at.0, say!("`{}` cannot be used: {why}", used.name.text))
+}
+
 struct Linker<'d> {
     files: &'d [Linked<'d>],
-    /// The files whose items stand in the list.
+    /// For each file, true if its items are in the list.
     done: Vec<bool>,
-    /// The files that are being put in, each with the `use` line in it that is being followed.
+    /// The files from the head to the present one, each with the place of the `use` line that leads to the next.
     way: Vec<(usize, Span)>,
     items: Vec<Item>,
     problems: Vec<Problem>,
@@ -61,7 +66,7 @@ impl<'d> Linker<'d> {
         let mut uses = file.uses.iter().copied();
         for item in &file.document.items {
             match item {
-                // Where there is no file, its loader has told why.
+                // If the file could not be read, that was reported before.
                 Item::Use(used) => {
                     if let Some(next) = uses.next().flatten() {
                         self.used(number, next, used);
@@ -89,7 +94,7 @@ impl<'d> Linker<'d> {
         }
     }
 
-    /// Reports a file that uses itself.
+    /// Reports a file that uses itself, directly or through others.
     fn circle(&mut self, next: usize, used: &Use) {
         let what = say!("`{}` uses itself in a circle", used.name.text);
         let mut problem = Problem::new(&codes::BAD_USE, used.name.at.0, what);
@@ -101,7 +106,7 @@ impl<'d> Linker<'d> {
         self.problems.push(problem.help(help));
     }
 
-    /// Reports the settings of a used file that differ from those of the whole.
+    /// Reports the settings of a used file that differ from those of the head.
     fn settings(&mut self, head: &Document, file: &Document) {
         let target = |d: &Document| {
             d.items.iter().find_map(|i| if let Item::Target(plc, at) = i { Some((*plc, at.0)) } else { None })

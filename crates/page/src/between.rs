@@ -41,7 +41,7 @@ pub(crate) enum Between {
     /// A question about files that the other module has open.
     About { files: Vec<Lent>, ask: Request },
     /// Converts a file of another tool. The answer is the message `imported`, which the first module then gets.
-    Import { ask: Lent },
+    Import { ask: Foreign },
     /// A converted file to be opened.
     Imported(Imported),
 }
@@ -51,9 +51,8 @@ pub(crate) enum Between {
 pub(crate) struct Lent {
     pub(crate) file: String,
     text: String,
-    /// The files that it uses.
-    #[serde(default)]
-    uses: Vec<Shelved>,
+    /// The files that it uses; none if it uses none.
+    uses: Option<Vec<Shelved>>,
 }
 
 impl Lent {
@@ -61,17 +60,24 @@ impl Lent {
         let uses = file
             .lent()
             .map(|(name, text)| Shelved { file: name.clone(), text: text.as_deref().map(str::to_owned) });
-        Lent { file: name.to_owned(), text: file.text().to_owned(), uses: uses.collect() }
+        Lent { file: name.to_owned(), text: file.text().to_owned(), uses: Some(uses.collect()) }
     }
 
     /// The file with its text.
     pub(crate) fn file(&self, language: Language) -> Result<File, Said> {
         let mut file = File::open_native(&self.file, self.text.clone())?;
         file.language = language;
-        let texts = self.uses.iter().map(|u| (u.file.clone(), u.text.as_deref().map(Arc::from)));
+        let texts = self.uses.iter().flatten().map(|u| (u.file.clone(), u.text.as_deref().map(Arc::from)));
         file.lend(&Arc::new(texts.collect()));
         Ok(file)
     }
+}
+
+/// A file of another tool.
+#[derive(Debug, Deserialize)]
+pub(crate) struct Foreign {
+    file: String,
+    text: String,
 }
 
 /// Says that the second module answers, by which message, about which files.
@@ -112,7 +118,7 @@ struct Told {
 }
 
 /// Converts a foreign file.
-pub(crate) fn import(Lent { file, text, .. }: Lent, language: Language) -> Result<Imported, Said> {
+pub(crate) fn import(Foreign { file, text }: Foreign, language: Language) -> Result<Imported, Said> {
     let (text, problems) = convert(&file, text)?;
     let told = problems.iter().map(|p| Told {
         code: p.code.id.to_owned(),

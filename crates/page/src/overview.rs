@@ -8,7 +8,7 @@ use g7_ide::{File, OWN};
 use g7_model::chart_in;
 use g7_model::instances::own_instances;
 use g7_model::{Document, Nanos, ProfileName, Switch};
-use g7_rig::{Other, Source};
+use g7_rig::Source;
 use serde::Serialize;
 
 use crate::drawing::{opens, sort};
@@ -34,21 +34,12 @@ pub(crate) struct Overview {
     scan_ms: f64,
     plants: Vec<String>,
     tests: Vec<TestRow>,
-    /// The files that it uses, and that those use.
-    uses: Vec<UseRow>,
+    /// The names of the files that it uses, and that those use; also of files that are not there.
+    uses: Vec<String>,
     /// The names of those whose texts are to be lent.
     wants: Vec<String>,
-}
-
-/// A file that was read for another one.
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
-struct UseRow {
-    /// Its name; of a part of the library, that behind `use`.
-    name: String,
-    library: bool,
-    /// The charts in it.
-    charts: Vec<String>,
+    /// The names of the parts of the library that they use.
+    parts: Vec<String>,
 }
 
 /// A switch of the profile.
@@ -118,6 +109,7 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         TestRow { name: t.title.to_string(), from, to, plant: t.plant.as_ref().map(|p| p.text.to_string()) }
     });
     let scan = document.cycle();
+    let parts = file.source.others().iter().filter(|o| o.library);
     Overview {
         file: name.to_owned(),
         version: file.version,
@@ -135,18 +127,10 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         scan_ms: scan.unwrap_or(SCAN).as_millis(),
         plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
         tests: tests.collect(),
-        uses: uses(file),
+        uses: file.uses.clone(),
         wants: file.wants().cloned().collect(),
+        parts: parts.map(|o| o.path.clone()).collect(),
     }
-}
-
-fn uses(file: &File) -> Vec<UseRow> {
-    let row = |o: &Other| UseRow {
-        name: if o.library { o.path.clone() } else { o.source.name.clone() },
-        library: o.library,
-        charts: o.source.document.charts().map(|c| c.name.text.to_string()).collect(),
-    };
-    file.source.others().iter().map(row).collect()
 }
 
 #[inline(never)]
@@ -177,14 +161,14 @@ const SCAN: Nanos = Nanos::from_millis(10);
 #[inline(never)]
 fn charts(file: &File) -> Vec<ChartRow> {
     let readable = file.drawn();
-    let document = &*file.with_uses(readable.document);
+    let document = &*file.with_uses(readable);
     let owners = owners(document);
     let mut instances: HashMap<&str, Vec<String>> = HashMap::new();
     for (name, chart) in own_instances(document) {
         instances.entry(chart).or_default().push(name.to_owned());
     }
+    let own = |c: &&g7_model::Chart| c.at.0.file == OWN;
     let row = |c: &g7_model::Chart| {
-        let own = c.at.0.file == OWN;
         let (from, to) = if readable.stale { (0, 0) } else { file.units(c.at.0) };
         ChartRow {
             name: c.name.text.to_string(),
@@ -194,13 +178,14 @@ fn charts(file: &File) -> Vec<ChartRow> {
             to,
             steps: c.steps().count(),
             transitions: c.transitions().count(),
-            file: (!own).then(|| file.source.home(c.at.0).name.clone()),
+            file: (!own(&c)).then(|| file.source.home(c.at.0).name.clone()),
             params: c.params.iter().map(|p| p.name.text.to_string()).collect(),
             instances: instances.get(&*c.name.text).cloned().unwrap_or_default(),
             of: owners.get(&*c.name.text).map(|of| of.map(str::to_owned)),
         }
     };
-    document.charts().map(row).collect()
+    // Those of other files stand behind its own, wherever their `use` lines are.
+    document.charts().filter(own).chain(document.charts().filter(|c| !own(c))).map(row).collect()
 }
 
 /// The macro-step that a chart is the expansion of, or the step that encloses it: the first one, with its chart.

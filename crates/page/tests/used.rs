@@ -23,6 +23,10 @@ fn the_page_asks_for_the_files_that_are_used() {
     assert_eq!((&problem["code"], &problem["line"]), (&json!("G0011"), &json!(1)));
     let what = problem["what"].as_str().expect("a text");
     assert_eq!(what, "cell/lib/axis.g7:1:5: `io.g7` cannot be used: there is no such file");
+    assert_eq!(look["uses"], json!(["cell/lib/axis.g7", "cell/lib/io.g7"]), "it is waited for");
+    page.ok(json!({ "do": "open", "file": "cell/lib/io.g7", "text": "type Mode : (Off, On)\n" }));
+    let look = page.ok(json!({ "do": "look", "file": "cell/a.g7" }));
+    assert_eq!(look["problems"], json!([]));
 }
 
 #[test]

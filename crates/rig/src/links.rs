@@ -1,35 +1,38 @@
-//! The files that a file uses: found by their paths, read once, and put together with it.
+//! Reads the files that a file uses, each once, and joins their items with its own.
 //!
 //! ```text
 //! Source (the head) -> paths of its `use` lines -> a reader (disk, page, library) -> Sources -> model::linked -> the whole
 //! ```
 //!
+//! The *head* is the file that is checked, run or edited; all others are read because of it.
+//!
 //! # What must hold
 //!
-//! - Nothing here opens a file. Whoever reads a file decides which folder may be read.
-//! - A path is relative to the file in which it is written, and one file has one path: `lib/a.g7`, `../b.g7`,
-//!   counted from the folder of the head.
-//! - A file that did not change is not parsed again.
+//! - Nothing here opens a file: the caller gives a reader, which decides which folders may be read.
+//! - A path in a text is relative to the file of that text. It becomes a path from the folder of the head (`lib/a.g7`,
+//!   `../b.g7`), so that a file has one path, whoever uses it.
+//! - A file whose bytes have not changed is not parsed again.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use g7_model::linked::{Linked, MOST_FILES, linked};
-use g7_model::{Document, FileId, Problem, Said, Severity, Span, Use, codes, say};
+use g7_model::linked::{Linked, MOST_FILES, linked, unusable};
+use g7_model::{Document, FileId, Problem, Said, Severity, Span, Use, say};
 
 use crate::source::{Links, Other, Source};
 
 /// The bytes of a file by its path from the folder of the head, or why it cannot be read.
 pub type Reader<'r> = &'r mut dyn FnMut(&str) -> Result<Vec<u8>, Said>;
 
-/// The first number of a file that another one uses lies this far above the number of that.
+/// The distance between the numbers ([`FileId`]) of the head and of the files that it uses.
 const APART: u32 = 1 << 16;
 
-/// The path of a file from the folder of the head, as written in the file with the path `from`.
+/// Converts a path that is written in the file `from` to a path from the folder of the head. `from` is such a path too,
+/// and empty for the head.
 ///
 /// # Errors
 ///
-/// The text is no relative path of a .g7 file.
+/// It is not a relative path of a .g7 file.
 pub fn resolved(from: &str, written: &str) -> Result<String, Said> {
     if written.contains('\\') {
         return Err(say!("the parts of a path are separated by `/`"));
@@ -55,7 +58,7 @@ pub fn resolved(from: &str, written: &str) -> Result<String, Said> {
     Ok(parts.join("/"))
 }
 
-/// The name of a file in messages: its path in terms of the name of the head.
+/// The name of a used file in messages: `plant/lib/b.g7` for the path `lib/b.g7`, if the head is `plant/a.g7`.
 pub fn named(head: &str, path: &str) -> String {
     let folder = head.rsplit_once('/').map_or("", |(folder, _)| folder);
     let mut parts: Vec<&str> = folder.split('/').collect();
@@ -72,8 +75,8 @@ pub fn named(head: &str, path: &str) -> String {
 }
 
 impl Source {
-    /// Reads the files that this one uses, those that they use, and puts all together. It is done again after a
-    /// change of the text; files whose bytes are the same are not parsed again.
+    /// Reads all files that this one uses, directly or through others, and joins their items with its own. Call it
+    /// again after a change of the text.
     pub fn link(&mut self, read: Reader<'_>) {
         let before = std::mem::take(&mut self.links);
         if self.document.uses().next().is_some() {
@@ -81,8 +84,8 @@ impl Source {
         }
     }
 
-    /// Links this file to the files that another one uses, without reading them again: a changed text of the same
-    /// file.
+    /// Joins the items of the files that `other` uses, without reading these again. For a changed text of the file
+    /// `other`.
     #[must_use]
     pub fn linked_like(mut self, other: &Source) -> Source {
         self.link(&mut |path| {
@@ -93,13 +96,13 @@ impl Source {
     }
 }
 
-/// Reads what the head uses. Files of `before` with the same bytes are kept.
+/// Reads the files that the head uses. `before` are the files of the last call: those with the same bytes are kept.
 fn links(head: &Source, before: &Links, read: Reader<'_>) -> Links {
     let mut loader =
         Loader { head, before, read, numbers: HashMap::new(), others: Vec::new(), problems: Vec::new() };
     let mut ways = vec![loader.uses(&head.document, "", None)];
     while let Some(other) = loader.others.get(ways.len() - 1) {
-        // A part of the library uses other parts alone; a test holds it to that.
+        // Parts of the library use only other parts (`tests/tests/linked.rs`), so the path is never looked at.
         let path = if other.library { String::new() } else { other.path.clone() };
         let (source, through) = (Arc::clone(&other.source), other.through);
         ways.push(loader.uses(&source.document, &path, Some(through)));
@@ -132,17 +135,17 @@ impl Loader<'_, '_> {
     }
 
     fn used(&mut self, used: &Use, from: &str, through: Span) -> Option<usize> {
-        // A name that is missing was told by the parser.
+        // The parser has reported the missing name.
         if used.name.text.is_empty() {
             return None;
         }
         let path =
             if used.library { Ok(used.name.text.to_string()) } else { resolved(from, &used.name.text) };
         let found = path.and_then(|path| self.found(used.library, path, through));
-        found.map_err(|why| self.refuse(used, why)).ok().flatten()
+        found.map_err(|why| self.refuse(used, &why)).ok().flatten()
     }
 
-    /// The number of a file. `None` if a `use` line before told why there is none.
+    /// The number of a file; `None` if an earlier `use` line of it has reported that it cannot be read.
     fn found(&mut self, library: bool, path: String, through: Span) -> Result<Option<usize>, Said> {
         let own = self.head.name.rsplit('/').next().unwrap_or_default();
         if !library && path == own {
@@ -179,11 +182,9 @@ impl Loader<'_, '_> {
         }
     }
 
-    fn refuse(&mut self, used: &Use, why: Said) {
-        let problem =
-            Problem::new(&codes::BAD_USE, used.name.at.0, say!("`{}` cannot be used: {why}", used.name.text));
-        let names: Vec<&str> = g7_library::PARTS.iter().map(|p| p.name).collect();
-        let near = g7_model::similar(&used.name.text, &names).filter(|_| used.library);
+    fn refuse(&mut self, used: &Use, why: &Said) {
+        let problem = unusable(used, why);
+        let near = g7_model::similar(&used.name.text, &parts()).filter(|_| used.library);
         self.problems.push(match near {
             Some(near) => problem.meant(near),
             None => problem,
@@ -191,9 +192,13 @@ impl Loader<'_, '_> {
     }
 }
 
+/// The names of the parts of the library.
+fn parts() -> Vec<&'static str> {
+    g7_library::PARTS.iter().map(|p| p.name).collect()
+}
+
 fn no_part() -> Said {
-    let names: Vec<&str> = g7_library::PARTS.iter().map(|p| p.name).collect();
-    say!("the library of this g7 has no such part; it has {}", Said::foreign(names.join(", ")))
+    say!("the library of this g7 has no such part; it has {}", Said::foreign(parts().join(", ")))
 }
 
 #[cfg(test)]

@@ -93,6 +93,12 @@ impl Source {
         &self.links.others
     }
 
+    /// The files that a change can come from: this one and all that it uses, by their names, with their bytes.
+    pub fn files(&self) -> impl Iterator<Item = (&str, &[u8])> {
+        let used = self.links.others.iter().filter(|o| !o.library).map(|o| &*o.source);
+        std::iter::once(self).chain(used).map(|s| (s.name.as_str(), s.bytes.as_slice()))
+    }
+
     /// All problems that were found when files were read: of its own text, and of those that it uses.
     pub fn read_problems(&self) -> Vec<Problem> {
         self.problems.iter().chain(&self.links.problems).cloned().collect()
@@ -189,6 +195,12 @@ impl Source {
         };
         let start = floor(span.start);
         start..floor(span.end).max(start)
+    }
+
+    /// The words at a place, also if it lies in a file that this one uses.
+    pub fn written(&self, span: Span) -> &str {
+        let home = self.home(span);
+        home.text.get(home.range(span)).unwrap_or_default()
     }
 
     /// The number of the line of a byte, from 0.

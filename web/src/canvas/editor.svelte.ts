@@ -75,13 +75,17 @@ class Editor {
   /** The file in which the chart stands, if it is another one: it is changed there. */
   readonly elsewhere: string | null = $derived(this.file?.look.charts.find((c) => c.name === this.chart)?.file ?? null);
 
+  /** Tells where a chart of another file is changed; false for a chart of this one. */
+  #refuses(): boolean {
+    if (this.elsewhere === null) return false;
+    shell.say(t('canvas.elsewhere', { name: this.elsewhere }));
+    return true;
+  }
+
   /** Executes a gesture: shows a refusal to the user, selects the new symbols. */
   async apply(gesture: Gesture): Promise<Edited | undefined> {
     const { file } = this;
-    if (this.elsewhere !== null) {
-      shell.say(t('canvas.elsewhere', { name: this.elsewhere }));
-      return undefined;
-    }
+    if (this.#refuses()) return undefined;
     return file ? this.#draw(file, () => file.edit(gesture)) : undefined;
   }
 
@@ -130,10 +134,7 @@ class Editor {
 
   /** Opens the field for editing a text of a symbol. */
   edit(id: string, field?: Field, index?: number): void {
-    if (this.elsewhere !== null) {
-      shell.say(t('canvas.elsewhere', { name: this.elsewhere }));
-      return;
-    }
+    if (this.#refuses()) return;
     const kind = kindOf(id);
     const of = actionOf(id);
     const usual: Field = kind === 't' ? 'receptivity' : kind === 'a' ? 'action' : kind === 'n' ? 'comment' : 'name';

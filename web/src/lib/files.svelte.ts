@@ -103,7 +103,7 @@ export class OpenFile {
 
   /** True if it uses the file of this name. */
   uses(name: string): boolean {
-    return this.look.uses.some((u) => !u.library && u.name === name) || this.look.wants.includes(name);
+    return this.look.uses.includes(name);
   }
 
   /** Executes a gesture. */
@@ -183,8 +183,10 @@ export class OpenFile {
     }
     const splices = asSplices(theirs);
     this.text = apply(this.text, splices);
-    this.look = await lent(edited);
+    this.look = edited;
     this.#tell({ splices, origin });
+    // The listeners hear of the text before any waiting, in the order of its changes.
+    this.look = await lent(edited);
     return edited;
   }
 
@@ -213,7 +215,7 @@ async function lent<L extends Look>(look: L): Promise<L> {
     await shelve(now.wants);
     now = await page.call({ do: 'look', file: look.file });
   }
-  return { ...look, ...now };
+  return now === look ? look : { ...look, ...now };
 }
 
 /** Reads files that others use, and gives them to the worker. */
@@ -248,6 +250,7 @@ class Files {
     file.tag = look.imported ? null : tag;
     this.list = [...this.list, file];
     this.current = file;
+    this.usedChanged(file.name);
     return file;
   }
 
@@ -300,8 +303,7 @@ class Files {
 
   /** The texts of the files that a file uses, for a run of the server. */
   lentTo(file: OpenFile): Shelved[] {
-    const names = file.look.uses.filter((u) => !u.library).map((u) => u.name);
-    return names.map((name) => ({ file: name, text: this.find(name)?.text ?? shelf.get(name) ?? null }));
+    return file.look.uses.map((name) => ({ file: name, text: this.find(name)?.text ?? shelf.get(name) ?? null }));
   }
 }
 

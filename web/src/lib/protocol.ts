@@ -146,10 +146,12 @@ export type Edited = {
   scan_ms: number;
   plants: Array<string>;
   tests: Array<TestRow>;
-  /** The files that it uses, and that those use. */
-  uses: Array<UseRow>;
+  /** The names of the files that it uses, and that those use; also of files that are not there. */
+  uses: Array<string>;
   /** The names of those whose texts are to be lent. */
   wants: Array<string>;
+  /** The names of the parts of the library that they use. */
+  parts: Array<string>;
 };
 
 export type Failure = {
@@ -539,10 +541,12 @@ export type Look = {
   scan_ms: number;
   plants: Array<string>;
   tests: Array<TestRow>;
-  /** The files that it uses, and that those use. */
-  uses: Array<UseRow>;
+  /** The names of the files that it uses, and that those use; also of files that are not there. */
+  uses: Array<string>;
   /** The names of those whose texts are to be lent. */
   wants: Array<string>;
+  /** The names of the parts of the library that they use. */
+  parts: Array<string>;
 };
 
 /** The lines of a text, from 0, that belong to a symbol. */
@@ -828,15 +832,6 @@ export type Text = { text: string };
 
 /** A language of controllers. */
 export type Tongue = 'st' | 'il' | 'ld';
-
-/** A file that was read for another one. */
-export type UseRow = {
-  /** Its name; of a part of the library, that behind `use`. */
-  name: string;
-  library: boolean;
-  /** The charts in it. */
-  charts: Array<string>;
-};
 
 /** The classes of variables. */
 export type VariableClass = 'input' | 'output' | 'var' | 'const';

@@ -25,13 +25,14 @@ use crate::sources::{self, Source};
 use crate::tongue::language;
 use crate::{files, style};
 use checked::Checked;
+use watch::Looked;
 
 pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
     if args.fix.is_some() && args.paths.iter().any(|p| p == Path::new("-")) {
         return Err(Failure::Usage(say!("--fix changes files; the standard input is none")));
     }
     if !args.watch {
-        return once(args, &files::all(&args.paths)?);
+        return Ok(once(args, &files::all(&args.paths)?)?.verdict);
     }
     if args.format != Report::Text || args.paths.iter().any(|p| p == Path::new("-")) {
         return Err(Failure::Usage(say!("--watch looks at files, and tells people: no --format, no `-`")));
@@ -40,14 +41,18 @@ pub(crate) fn check(args: &Check) -> Result<Verdict, Failure> {
 }
 
 /// Checks these files.
-fn once(args: &Check, paths: &[PathBuf]) -> Result<Verdict, Failure> {
+fn once(args: &Check, paths: &[PathBuf]) -> Result<Looked, Failure> {
     let mut progress = Progress::new("checking", paths.len() as u64);
     let mut out = anstream::stdout().lock();
     let (mut tally, mut all, mut fixable) = (Tally::default(), Vec::new(), 0);
+    let mut used = Vec::new();
     for path in paths {
         let checked = one(args, path)?;
         tally.add(Tally::of(&checked.problems));
-        fixable += checked.problems.iter().filter(|p| p.fixes.iter().any(|f| f.sure)).count();
+        used.extend(checked.source.files().skip(1).map(|(name, _)| PathBuf::from(name)));
+        // A mistake of a used file is solved where that file is checked.
+        let own = |p: &&Problem| p.at.file == checked.source.id() && p.fixes.iter().any(|f| f.sure);
+        fixable += checked.problems.iter().filter(own).count();
         progress.step();
         match args.format {
             Report::Text => print(&mut out, &checked)?,
@@ -66,7 +71,7 @@ fn once(args: &Check, paths: &[PathBuf]) -> Result<Verdict, Failure> {
         summary(paths.len(), tally, fixable);
     }
     let bad = tally.errors > 0 || (args.strict && tally.warnings > 0);
-    Ok(if bad { Verdict::Found } else { Verdict::Fine })
+    Ok(Looked { verdict: if bad { Verdict::Found } else { Verdict::Fine }, used })
 }
 
 /// Reads a file, solves what is to be solved, and checks what is left.

@@ -91,16 +91,25 @@ impl Ear {
     }
 }
 
+/// The result of a look at files.
+pub(super) struct Looked {
+    pub(super) verdict: Verdict,
+    /// The files that the files use, which were read as well.
+    pub(super) used: Vec<PathBuf>,
+}
+
 /// Does something with the files now and after each change. Failures are told and do not end it, apart from
 /// that of the output, and that of the first look.
 pub(super) fn for_ever(
     find: impl Fn() -> Result<Vec<PathBuf>, Failure>,
-    look: impl Fn(&[PathBuf]) -> Result<Verdict, Failure>,
+    look: impl Fn(&[PathBuf]) -> Result<Looked, Failure>,
 ) -> Result<Verdict, Failure> {
     let mut paths = find()?;
+    // The files that those use; known behind a look.
+    let mut used: Vec<PathBuf> = Vec::new();
     let mut ear = Ear::new();
     loop {
-        ear.follow(&paths);
+        ear.follow(&[&*paths, &*used].concat());
         // The state before the look: what changes while it goes on is seen afterwards. What --fix writes
         // is looked at once more, which finds nothing to write.
         let before = seen(&paths);
@@ -110,15 +119,17 @@ pub(super) fn for_ever(
         match look(&paths) {
             Err(failure @ Failure::Output(_)) => return Err(failure),
             Err(failure) => error(&failure),
-            Ok(_) => {}
+            Ok(looked) => used = looked.used,
         }
+        let before_used = seen(&used);
+        ear.follow(&[&*paths, &*used].concat());
         let waiting = told(&say!("waiting for a change; Ctrl-C ends"));
         talk!("{}{waiting}{:#}", style::FAINT, style::FAINT);
         loop {
             ear.wait();
             // An editor may replace a file by another: for a moment there may be none.
             let Ok(now) = find() else { continue };
-            if seen(&now) != before {
+            if seen(&now) != before || seen(&used) != before_used {
                 paths = now;
                 break;
             }

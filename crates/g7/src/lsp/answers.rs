@@ -4,7 +4,7 @@ use g7_ide::completion::complete;
 use g7_ide::lenses::Work;
 use g7_ide::outline::{Entry, Kind};
 use g7_ide::tokens::{Class, Coloured};
-use g7_ide::{File, references};
+use g7_ide::{File, Positions, references};
 use lsp_types::{
     CodeLens, CodeLensParams, Command, CompletionItem, CompletionItemKind, CompletionParams,
     CompletionTextEdit, DocumentHighlight, DocumentHighlightParams, DocumentSymbol, DocumentSymbolParams,
@@ -16,13 +16,13 @@ use serde_json::{Value, json};
 
 use super::actions::at;
 use super::open::Open;
-use super::{places, used};
+use super::places;
 
 /// The abilities of the server.
 pub(super) fn capabilities() -> Value {
     json!({
         "positionEncoding": "utf-16",
-        "textDocumentSync": { "openClose": true, "change": 2 },
+        "textDocumentSync": { "openClose": true, "change": 2, "save": true },
         "completionProvider": { "triggerCharacters": [".", ">", ":"] },
         "hoverProvider": true,
         "definitionProvider": true,
@@ -109,10 +109,13 @@ pub(super) fn definition(open: &Open, p: &GotoDefinitionParams) -> Option<Locati
     let found = references::uses(file, byte);
     if let Some(there) = found.elsewhere {
         let home = file.source.home(there);
-        // A part of the library is no file.
+        // The parts of the library are texts in the program: there is no file to open.
         let other = file.source.others().iter().find(|o| !o.library && o.source.name == home.name)?;
-        let uri = used::beside(&p.text_document.uri, &other.path)?;
-        return Some(Location::new(uri, places::range_in(home, &there.bytes())));
+        let uri = places::beside(&p.text_document.uri, &other.path)?;
+        return Some(Location::new(
+            uri,
+            places::range_of(&Positions::new(&home.text), &home.text, &there.bytes()),
+        ));
     }
     Some(Location::new(p.text_document.uri.clone(), places::range(file, &found.declared?)))
 }

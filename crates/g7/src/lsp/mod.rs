@@ -25,7 +25,8 @@ mod used;
 use g7_model::{Language, say};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{
-    DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, Notification as _, PublishDiagnostics,
+    DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, DidSaveTextDocument, Notification as _,
+    PublishDiagnostics,
 };
 use lsp_types::request::{
     CodeActionRequest, CodeLensRequest, Completion, DocumentHighlightRequest, DocumentSymbolRequest,
@@ -114,6 +115,11 @@ fn hear(open: &mut Open, told: Notification) {
         DidChangeTextDocument::METHOD => {
             if let Ok(told) = serde_json::from_value(told.params) {
                 open.change(told);
+            }
+        }
+        DidSaveTextDocument::METHOD => {
+            if let Ok(told) = serde_json::from_value(told.params) {
+                open.saved(&told);
             }
         }
         DidCloseTextDocument::METHOD => {

@@ -1,16 +1,18 @@
 //! The texts that the editor has open, and the problems that it is told.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
 use g7_edit::{Splice, spliced};
 use g7_ide::{File, Positions};
 use g7_model::{Problem, Said, Severity, say};
 use lsp_types::{
     Diagnostic, DiagnosticRelatedInformation, DiagnosticSeverity, DidChangeTextDocumentParams,
-    DidCloseTextDocumentParams, DidOpenTextDocumentParams, Location, NumberOrString,
-    PublishDiagnosticsParams, TextDocumentContentChangeEvent, Uri,
+    DidCloseTextDocumentParams, DidOpenTextDocumentParams, DidSaveTextDocumentParams, Location,
+    NumberOrString, PublishDiagnosticsParams, TextDocumentContentChangeEvent, Uri,
 };
 
+use super::used::Why;
 use super::{places, used};
 
 /// The open texts, by address.
@@ -34,10 +36,9 @@ struct Text {
 }
 
 impl Text {
-    /// The addresses of the files that it uses.
-    fn uses(&self) -> impl Iterator<Item = Uri> {
-        let names = self.file.as_ref().map_or(&[][..], |f| &f.uses);
-        names.iter().filter_map(|name| used::beside(&self.uri, name))
+    /// True if it uses the file at a path.
+    fn uses(&self, path: &Path) -> bool {
+        self.file.as_ref().is_ok_and(|file| used::paths(file, &self.uri).iter().any(|used| used == path))
     }
 }
 
@@ -62,26 +63,43 @@ impl Open {
         self.changed.insert(uri.as_str().to_owned());
         self.texts
             .insert(uri.as_str().to_owned(), Text { uri: uri.clone(), version: document.version, file });
-        self.lend(&uri);
+        self.lend(uri.as_str(), Why::Fresh);
+        self.hand_on(&uri);
     }
 
-    /// Lends files the texts that they use: the one at an address, and all that may use that.
-    fn lend(&mut self, about: &Uri) {
-        let heads = self.texts.values().filter(|t| t.uri == *about || t.uses().any(|u| u == *about));
-        let heads: Vec<String> = heads.map(|t| t.uri.as_str().to_owned()).collect();
-        for address in heads {
-            // While a file is lent to, the others can be looked at.
-            let Some(mut text) = self.texts.remove(&address) else { continue };
-            if let Ok(file) = &mut text.file {
-                let before = file.version;
-                let open = |uri: &Uri| Some(self.file(uri)?.text().to_owned());
-                used::lend(file, &text.uri, &open);
-                if file.version != before {
-                    self.changed.insert(address.clone());
-                }
+    /// The editor has saved a text. Files that it uses may have changed on the disk as well.
+    pub(super) fn saved(&mut self, told: &DidSaveTextDocumentParams) {
+        self.lend(told.text_document.uri.as_str(), Why::Fresh);
+    }
+
+    /// Gives the file at an address the texts that it uses.
+    fn lend(&mut self, address: &str, why: Why<'_>) {
+        // It is taken out, so that the others can be looked at.
+        let Some(mut text) = self.texts.remove(address) else { return };
+        if let Ok(file) = &mut text.file {
+            let before = file.version;
+            let open = |path: &Path| Some(self.at(path)?.text().to_owned());
+            used::lend(file, &text.uri, why, &open);
+            if file.version != before {
+                self.changed.insert(address.to_owned());
             }
-            self.texts.insert(address, text);
         }
+        self.texts.insert(address.to_owned(), text);
+    }
+
+    /// Gives the file at an address to all that use it: its text has changed, or it was opened or closed.
+    fn hand_on(&mut self, uri: &Uri) {
+        let Some(path) = places::path(uri) else { return };
+        let heads = self.texts.iter().filter(|(_, t)| t.uses(&path)).map(|(address, _)| address.clone());
+        for head in heads.collect::<Vec<_>>() {
+            self.lend(&head, Why::Changed(&path));
+        }
+    }
+
+    /// The file at a path, if it is open.
+    fn at(&self, path: &Path) -> Option<&File> {
+        let text = self.texts.values().find(|t| places::path(&t.uri).as_deref() == Some(path))?;
+        text.file.as_ref().ok()
     }
 
     pub(super) fn change(&mut self, told: DidChangeTextDocumentParams) {
@@ -93,15 +111,16 @@ impl Open {
             text.file = Err(no);
         }
         self.changed.insert(uri.as_str().to_owned());
-        self.lend(&uri);
+        self.lend(uri.as_str(), Why::Typed);
+        self.hand_on(&uri);
     }
 
     pub(super) fn end(&mut self, told: DidCloseTextDocumentParams) {
         let uri = told.text_document.uri;
         self.changed.remove(uri.as_str());
         if self.texts.remove(uri.as_str()).is_some() {
-            // Those that use it see what is on the disk again.
-            self.lend(&uri);
+            // For those that use it, the text on the disk counts again.
+            self.hand_on(&uri);
             self.closed.push(uri);
         }
     }

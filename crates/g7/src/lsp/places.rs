@@ -5,7 +5,6 @@ use std::path::PathBuf;
 
 use g7_edit::Splice;
 use g7_ide::{File, Positions};
-use g7_rig::Source;
 use lsp_types::{Position, Range, TextEdit, Uri};
 
 /// A byte of a text as a position.
@@ -22,15 +21,12 @@ pub(super) fn byte(positions: &Positions, text: &str, at: Position) -> usize {
 
 /// A range of bytes of a file.
 pub(super) fn range(file: &File, bytes: &ops::Range<usize>) -> Range {
-    let place = |byte| position(&file.positions, file.text(), byte);
-    Range::new(place(bytes.start), place(bytes.end))
+    range_of(&file.positions, file.text(), bytes)
 }
 
-/// A range of bytes of a file that an open one uses.
-pub(super) fn range_in(source: &Source, bytes: &ops::Range<usize>) -> Range {
-    let positions = Positions::new(&source.text);
-    let place = |byte| position(&positions, &source.text, byte);
-    Range::new(place(bytes.start), place(bytes.end))
+/// A range of bytes of a text.
+pub(super) fn range_of(positions: &Positions, text: &str, bytes: &ops::Range<usize>) -> Range {
+    Range::new(position(positions, text, bytes.start), position(positions, text, bytes.end))
 }
 
 /// The bytes of a range of a file.
@@ -58,10 +54,31 @@ pub(super) fn path(uri: &Uri) -> Option<PathBuf> {
     Some(PathBuf::from(path))
 }
 
-/// The address of a file in the folder of another one.
-pub(super) fn beside(uri: &Uri, name: &str) -> Option<Uri> {
-    let (folder, _) = uri.as_str().rsplit_once('/')?;
+/// The address of a file by its path from the folder of another one; the parts of the path are separated by `/`.
+pub(super) fn beside(uri: &Uri, path: &str) -> Option<Uri> {
     let plain = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_' | b'~');
     let written = |b: u8| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") };
-    format!("{folder}/{}", name.bytes().map(written).collect::<String>()).parse().ok()
+    let (mut folder, _) = uri.as_str().rsplit_once('/')?;
+    let mut rest = path;
+    while let Some(up) = rest.strip_prefix("../") {
+        (folder, _) = folder.rsplit_once('/')?;
+        rest = up;
+    }
+    let parts = rest.split('/').map(|part| part.bytes().map(written).collect::<String>());
+    format!("{folder}/{}", parts.collect::<Vec<_>>().join("/")).parse().ok()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_address_beside_another_one_leads_to_its_path() {
+        let head: Uri = "file:///plant/x/a.g7".parse().expect("an address");
+        let beside = |path| beside(&head, path).expect("an address");
+        assert_eq!(beside("line 2/é%.g7").as_str(), "file:///plant/x/line%202/%C3%A9%25.g7");
+        assert_eq!(beside("../b.g7").as_str(), "file:///plant/b.g7");
+        assert_eq!(path(&beside("line 2/é%.g7")), Some(PathBuf::from("/plant/x/line 2/é%.g7")));
+        assert_eq!(path(&"untitled:a".parse().expect("an address")), None);
+    }
 }

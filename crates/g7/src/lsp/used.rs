@@ -1,7 +1,7 @@
-//! The files that open texts use: those that the editor has open as they are there, others from the disk.
+//! The files that open texts use. A file that is open in the editor counts as it is there, any other one as it is on the
+//! disk.
 
-use std::path::Path;
-use std::str::FromStr;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use g7_ide::{File, Texts};
@@ -10,55 +10,59 @@ use lsp_types::Uri;
 use super::places;
 use crate::used;
 
-/// Most rounds in which a file shows others that it uses.
+/// Most rounds: in each, the files that were read may use others.
 const ROUNDS: usize = 1000;
 
-/// Lends a file the texts of those that it uses. `open` gives the text of a file that is open.
-pub(super) fn lend(file: &mut File, uri: &Uri, open: &dyn Fn(&Uri) -> Option<String>) {
-    if file.uses.is_empty() {
-        return;
-    }
-    let folder = places::path(uri).and_then(|p| p.parent()?.canonicalize().ok());
-    let root = folder.as_deref().and_then(|folder| used::root(folder).ok());
-    let read = |name: &str| -> Option<Arc<str>> {
-        let path = folder.as_ref()?.join(name);
-        if let Some(text) = address(&path).and_then(|uri| open(&uri)) {
-            return Some(text.into());
-        }
-        let bytes = used::within(root.as_ref()?, &path).ok()?;
-        String::from_utf8(bytes).ok().map(Arc::from)
+/// The reason to read files for another one.
+#[derive(Clone, Copy)]
+pub(super) enum Why<'p> {
+    /// The editor has opened or saved it: all files are read.
+    Fresh,
+    /// Somebody types in it: only what was not read yet is.
+    Typed,
+    /// This file has changed in the editor: it alone is read.
+    Changed(&'p Path),
+}
+
+/// Gives a file the texts of those that it uses. `open` gives the text of a file that is open in the editor.
+pub(super) fn lend(file: &mut File, uri: &Uri, why: Why<'_>, open: &dyn Fn(&Path) -> Option<String>) {
+    let Some(folder) = folder(uri).filter(|_| !file.uses.is_empty()) else { return };
+    let path = |name: &str| used::plain(&folder.join(name));
+    let stays = |name: &str| match why {
+        Why::Fresh => false,
+        Why::Typed => true,
+        Why::Changed(changed) => path(name) != changed,
     };
+    let mut known: Texts = file
+        .lent()
+        .filter(|(name, _)| stays(name))
+        .map(|(name, text)| (name.clone(), text.clone()))
+        .collect();
     for _ in 0..ROUNDS {
-        let texts: Texts = file.uses.iter().map(|name| (name.clone(), read(name))).collect();
-        if !file.lend(&Arc::new(texts)) {
+        for name in &file.uses {
+            let read = || open(&path(name)).or_else(|| on_disk(&folder, name)).map(Arc::from);
+            known.entry(name.clone()).or_insert_with(read);
+        }
+        if !file.lend(&Arc::new(known.clone())) {
             return;
         }
     }
 }
 
-/// The address of a file that another one uses, by its name there.
-pub(super) fn beside(uri: &Uri, name: &str) -> Option<Uri> {
-    address(&places::path(uri)?.parent()?.join(name))
+/// The paths of the files that a file uses.
+pub(super) fn paths(file: &File, uri: &Uri) -> Vec<PathBuf> {
+    let folder = folder(uri);
+    let path = |name: &String| Some(used::plain(&folder.as_ref()?.join(name)));
+    file.uses.iter().filter_map(path).collect()
 }
 
-/// The address of a path, without `..` in it.
-fn address(path: &Path) -> Option<Uri> {
-    let uri = crate::sarif::artifact(used::plain(path).to_str()?);
-    Uri::from_str(uri["uri"].as_str()?).ok()
+fn folder(uri: &Uri) -> Option<PathBuf> {
+    Some(places::path(uri)?.parent()?.to_path_buf())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_path_comes_back_from_its_address() {
-        let there = Path::new("/plant/é x/a%b.g7");
-        let uri = address(there).expect("it is UTF-8");
-        assert_eq!(uri.as_str(), "file:///plant/%C3%A9%20x/a%25b.g7");
-        assert_eq!(places::path(&uri).as_deref(), Some(there));
-        assert_eq!(beside(&uri, "../b.g7").expect("it is there").as_str(), "file:///plant/b.g7");
-        let untitled = Uri::from_str("untitled:a").expect("an address");
-        assert_eq!(places::path(&untitled), None);
-    }
+/// The text of a file on the disk, if it may be read.
+fn on_disk(folder: &Path, name: &str) -> Option<String> {
+    let folder = folder.canonicalize().ok()?;
+    let bytes = used::within(&used::root(&folder).ok()?, &folder.join(name)).ok()?;
+    String::from_utf8(bytes).ok()
 }

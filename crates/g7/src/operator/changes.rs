@@ -4,6 +4,7 @@
 //! Reading, compiling and carrying over take longer than a scan, so they have a thread of their own; the
 //! attendant gets the outcome.
 
+use std::path::Path;
 use std::sync::mpsc::{Receiver, TryRecvError, channel};
 use std::time::SystemTime;
 
@@ -49,8 +50,8 @@ pub(crate) struct Changes {
     before: Option<Names>,
     work: Option<Work>,
     made: Option<Adopted>,
-    /// Size and time of the file at the latest look, and if its text is another one than that which runs.
-    file: (Option<(u64, SystemTime)>, bool),
+    /// Sizes and times of the files at the latest look, and if a text is another one than that which runs.
+    file: (Option<Vec<(u64, SystemTime)>>, bool),
     due: Nanos,
 }
 
@@ -137,11 +138,16 @@ impl Changes {
     pub(crate) fn facts(&mut self, names: &Names, now: Nanos) -> Value {
         if now >= self.due {
             self.due = now + LOOK;
-            let path = &self.origin.path;
-            let is = std::fs::metadata(path).ok().and_then(|m| Some((m.len(), m.modified().ok()?)));
+            // The paths of the chart and of the files that it uses.
+            let used = || names.source.files().skip(1).map(|(name, bytes)| (Path::new(name), bytes));
+            let files = || std::iter::once((&*self.origin.path, &*names.source.bytes)).chain(used());
+            let stamp = |(path, _): (&Path, _)| {
+                std::fs::metadata(path).ok().and_then(|m| Some((m.len(), m.modified().ok()?)))
+            };
+            let is: Option<Vec<_>> = files().map(stamp).collect();
             if is.is_none() || is != self.file.0 {
                 // A file that cannot be read at the moment is told when the change is asked for.
-                let differs = std::fs::read(path).is_ok_and(|bytes| bytes != names.source.bytes);
+                let differs = files().any(|(path, bytes)| std::fs::read(path).is_ok_and(|now| now != bytes));
                 self.file = (is, differs);
             }
         }

@@ -87,7 +87,7 @@ impl File<'_> {
         if args.plant.is_none() {
             work.progress.enter(Phase::Compile);
             let (asked, found) = ask(source.whole(), profile);
-            problems.extend(found);
+            problems.extend(source.about(found));
             let Some(asked) = asked else { return Ok(problems) };
             let model = Model::new(&asked.compiled, asked.assume.clone());
             // The charts alone have no more than their part, so that there is time for those with plants.
@@ -195,7 +195,7 @@ impl File<'_> {
         verdict: &Verdict,
     ) -> Result<Answered, Failure> {
         let source = self.source;
-        let written = source.text.get(source.range(question.at)).unwrap_or_default();
+        let written = source.written(question.at);
         let claim = Said::in_each(words::claim(written, model.compiled, question));
         let run = match verdict {
             Verdict::Refuted(Evidence::Run(run)) => Some(run),

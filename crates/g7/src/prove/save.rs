@@ -31,7 +31,7 @@ pub(super) fn tests(
 ) -> Result<(), Failure> {
     for (question, verdict) in answered.0.iter().zip(answered.1) {
         let Some(Verdict::Refuted(evidence)) = verdict else { continue };
-        let written = source.text.get(source.range(question.at)).unwrap_or_default();
+        let written = source.written(question.at);
         let claims = words::claim(written, model.compiled, question);
         let title = title(&claims[0]);
         let claim = || Said::in_each(claims.each_ref().map(|claim| short(claim)));

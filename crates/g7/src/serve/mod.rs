@@ -117,7 +117,7 @@ fn shared(
     };
     let folder = Arc::new(Folder::new(&root, args.read_only).map_err(unreadable)?);
     let project = Project::of(folder.root()).map_err(Failure::Usage)?.unwrap_or_default();
-    let main = project.main.as_ref().filter(|main| folder.root().join(main).is_file()).cloned();
+    let main = project.main(folder.root()).map_err(Failure::Usage)?;
     let chart = folder.root().join("chart.g7").is_file().then(|| "chart.g7".to_owned());
     let start = args.start.clone().or(first).or(main).or(chart);
     if let Some(start) = &start {

@@ -8,7 +8,7 @@ use crate::{
     Span, Stmt, StmtKind, Type,
 };
 
-/// The check functions of one document.
+/// The functions that hold variables to their bounds, made for one document. Equal bounds share one.
 #[derive(Default)]
 pub(super) struct Checks {
     /// The names in the document. A new function must have another name.
@@ -51,9 +51,14 @@ impl Checks {
         Expr { kind: ExprKind::Call(path, vec![Arg { name: None, output: false, value }]), at: place }
     }
 
-    /// Makes `function INT_within_0_100(x : INT) : INT { INT_within_0_100 := MUX(SEL(x < 0 OR x > 100, 0, 2), x, 0) }`. This MUX
-    /// has the inputs 0 and 1; to choose the input 2 is the fault `range` (SEMANTICS, section 5), in the engine and in the
-    /// equations.
+    /// Makes a function that returns its argument, or ends the scan with the fault `range`:
+    ///
+    /// ```text
+    /// function INT_within_0_100(x : INT) : INT { INT_within_0_100 := MUX(SEL(x < 0 OR x > 100, 0, 2), x, 0) }
+    /// ```
+    ///
+    /// This MUX has the inputs 0 and 1. Outside of the bounds the chosen input is 2, which is not there: the fault `range`
+    /// (SEMANTICS, section 5).
     fn function(&mut self, low: i128, high: i128, ty: Type, at: Place) -> Name {
         let signed = |n: i128| n.to_string().replace('-', "m");
         let mut text = format!("{}_within_{}_{}", ty.name(), signed(low), signed(high));

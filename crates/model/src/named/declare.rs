@@ -12,8 +12,8 @@ use crate::{
 /// Most values of an enumeration.
 const MOST: usize = 1 << 12;
 
-/// Replaces the names of declared types by what the types are, in all declarations. Returns the problems of the types as
-/// well.
+/// Puts each declared type in the place of its name, in all declarations of variables. Also returns the problems of the
+/// declared types.
 pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
     let limited = |v: &VarDecl| v.limits.is_some();
     let concerned = |i: &Item| match i {

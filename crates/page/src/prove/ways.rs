@@ -124,7 +124,7 @@ fn test(
     bench: Option<&Bench>,
 ) -> Result<Added, saved::Said> {
     let bench = bench.ok_or(saved::UNSEEN)?;
-    let written = file.text().get(file.source.range(question.at)).unwrap_or_default();
+    let written = file.source.written(question.at);
     let [claim, ..] = words::claim(written, model.compiled, question);
     let given = Given { source: &file.source, bench, model, question, run };
     let made = saved::of_run(&given, &fresh(file, saved::title(&claim)))?;

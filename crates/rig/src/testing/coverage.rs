@@ -250,7 +250,7 @@ fn drives(unit: &Unit, action: &Action, name: &str, at: Span) -> bool {
 
 /// The author's text at a place, up to the end of the line.
 fn first_line(source: &Source, at: Span) -> String {
-    let text = source.text.get(source.range(at)).unwrap_or("");
+    let text = source.written(at);
     let line = text.lines().next().unwrap_or("").trim();
     if line.chars().count() > 40 { line.chars().take(39).chain(['…']).collect() } else { line.to_owned() }
 }

@@ -52,7 +52,7 @@ impl Defect {
         self.place = source.place(self.at);
         self.origin = self.origin_at.map(|at| source.place(at));
         if let Some(at) = self.expected_at {
-            let text = source.text.get(source.range(at)).unwrap_or("");
+            let text = source.written(at);
             self.expected = text.split_whitespace().collect::<Vec<_>>().join(" ");
         }
     }

@@ -21,7 +21,7 @@ pub struct Unproved {
 /// checked with the charts; to prove them is the work of `verify`.
 pub fn unproved(source: &Source) -> Vec<Unproved> {
     let one = |p: &Property| {
-        let written = source.text.get(source.range(p.at.0)).unwrap_or_default();
+        let written = source.written(p.at.0);
         Unproved {
             place: source.place(p.at.0),
             text: written.split_whitespace().collect::<Vec<_>>().join(" "),

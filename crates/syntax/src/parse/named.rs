@@ -83,7 +83,7 @@ impl Parser<'_> {
         Some(Limits::Range(least, most))
     }
 
-    /// Reports values of an enumeration in a declaration that is not `type Name : (…)`: they would have no type with a name.
+    /// Reports the values of an enumeration anywhere but in `type Name : (…)`, because an enumeration needs a name.
     pub(super) fn no_values(&mut self, v: &VarDecl) {
         if let Some((first, _)) = v.values().first() {
             let first = first.at.0;
