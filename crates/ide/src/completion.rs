@@ -7,9 +7,8 @@ use g7_model::{
     Composed, Document, Item, Name, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, VarKind,
     say,
 };
-use g7_syntax::{Token, TokenKind};
-
 use g7_rig::{LIBRARY, Part};
+use g7_syntax::{Token, TokenKind};
 
 use crate::file::{File, OWN, floor};
 use crate::names::{Meaning, names, sort};

@@ -28,17 +28,16 @@ pub struct File {
     pub history: History,
     /// The language of the reader: of hover, completion and the titles of fixes.
     pub language: Language,
-    /// The texts of the files that it may use.
+    /// Texts of other files, those that it uses among them.
     texts: Arc<Texts>,
     /// The names of the files that it uses, and that those use; also of files that are not there.
     pub uses: Vec<String>,
 }
 
-/// Texts of files that others use, by their names; `None` for a file that is not there. A file that is missing in the
-/// list was not asked for yet.
+/// Texts of files that others use, by their names. `None`: there is no such file. No entry: nobody has looked yet.
 pub type Texts = BTreeMap<String, Option<Arc<str>>>;
 
-/// The number of an open file in places; those that it uses have others.
+/// The number of each open file in its own places. The files that it uses have other numbers.
 pub const OWN: FileId = FileId(0);
 
 /// Greatest length of a text that is opened, in bytes.
@@ -195,7 +194,7 @@ impl File {
         !self.source.has_errors()
     }
 
-    /// Takes the texts of other files. Returns true if one that it uses is another one than before.
+    /// Takes the texts of other files. Returns true if that of a used file has changed.
     pub fn lend(&mut self, texts: &Arc<Texts>) -> bool {
         let before = std::mem::replace(&mut self.texts, Arc::clone(texts));
         let changed = self.uses.iter().any(|name| before.get(name) != self.texts.get(name));
@@ -206,17 +205,17 @@ impl File {
         changed
     }
 
-    /// The texts that it was lent, of the files that it uses.
+    /// The texts of the files that it uses, as far as it was lent them.
     pub fn lent(&self) -> impl Iterator<Item = (&String, &Option<Arc<str>>)> {
         self.uses.iter().filter_map(|name| self.texts.get_key_value(name))
     }
 
-    /// The names of the files that it uses and whose texts it was not lent yet.
+    /// The names of the files that it uses, as far as it was not lent their texts.
     pub fn wants(&self) -> impl Iterator<Item = &String> {
         self.uses.iter().filter(|name| !self.texts.contains_key(*name))
     }
 
-    /// Puts the file together with those that it uses.
+    /// Joins the items of the files that it uses with its own.
     fn link(&mut self) {
         self.uses.clear();
         let (name, texts, uses) = (self.source.name.clone(), &self.texts, &mut self.uses);
@@ -273,13 +272,14 @@ impl File {
             _ => self.present(),
         }
     }
-}
 
-impl File {
     /// A document of the file with the items of the files that it uses.
     pub fn with_uses<'d>(&'d self, own: Readable<'d>) -> Cow<'d, Document> {
-        if !own.stale || self.source.others().is_empty() {
-            return Cow::Borrowed(if own.stale { own.document } else { self.source.whole() });
+        if !own.stale {
+            return Cow::Borrowed(self.source.whole());
+        }
+        if self.source.others().is_empty() {
+            return Cow::Borrowed(own.document);
         }
         let used = self.source.whole().items.iter().filter(|i| i.at().file != OWN);
         let items = own.document.items.iter().chain(used).cloned().collect();

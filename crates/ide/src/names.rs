@@ -1,6 +1,5 @@
 //! The names that a document defines, and their meaning.
 
-use crate::file::OWN;
 use g7_compile::Definition;
 use g7_compile::references::{Member, values};
 use g7_model::{
@@ -8,6 +7,8 @@ use g7_model::{
     say,
 };
 use g7_syntax::{Token, TokenKind};
+
+use crate::file::OWN;
 
 /// The meaning of a name.
 #[derive(Clone, Copy, Debug)]

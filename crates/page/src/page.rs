@@ -112,7 +112,7 @@ impl Page {
         file.language = self.language;
         let name = if file.imported { with_ending(&name) } else { name };
         self.files.insert(name.clone(), file);
-        self.shelve(&name, true);
+        self.shelve(&name);
         self.look(name)
     }
 
@@ -128,14 +128,14 @@ impl Page {
         self.runs.get_mut(name).ok_or_else(|| no_run(name))
     }
 
-    /// Lends the text of a file, which has changed, to the open files that use it. A file that was `opened` may use
-    /// others that are open.
-    fn shelve(&mut self, name: &str, opened: bool) {
+    /// The text of a file is new: lends it to the open files that use it, and those that it uses to the file.
+    fn shelve(&mut self, name: &str) {
+        let Some(file) = self.files.get(name) else { return };
         let used = self.files.values().any(|f| f.uses.iter().any(|used| used == name));
-        if used && let Some(file) = self.files.get(name) {
+        if used {
             Arc::make_mut(&mut self.texts).insert(name.to_owned(), Some(file.text().into()));
         }
-        if used || opened || self.files.get(name).is_some_and(|f| f.wants().next().is_some()) {
+        if used || file.wants().next().is_some() {
             self.lend_all();
         }
     }
@@ -150,9 +150,11 @@ impl Page {
                 texts.insert(name, Some(file.text().into()));
             }
             let texts = Arc::clone(&self.texts);
-            // Each file takes them, whether another one has changed or not.
-            let changed = self.files.values_mut().filter_map(|f| f.lend(&texts).then_some(())).count();
-            if changed == 0 {
+            let mut changed = false;
+            for file in self.files.values_mut() {
+                changed |= file.lend(&texts);
+            }
+            if !changed {
                 break;
             }
         }
@@ -161,7 +163,7 @@ impl Page {
     /// Executes a change of the history.
     fn travel(&mut self, name: &str, back: bool) -> Result<Edited, Said> {
         let edited = edit::travel(name, self.file_mut(name)?, back)?;
-        self.shelve(name, false);
+        self.shelve(name);
         Ok(edited)
     }
 
@@ -232,13 +234,13 @@ impl Answers for Page {
         let open = self.file_mut(&file)?;
         let splices = inward(open, &splices);
         open.change(&splices, !unit)?;
-        self.shelve(&file, false);
+        self.shelve(&file);
         self.look(file)
     }
 
     fn edit(&mut self, file: String, gesture: Gesture) -> Result<Edited, Said> {
         let edited = edit::edit(&file, self.file_mut(&file)?, &gesture)?;
-        self.shelve(&file, false);
+        self.shelve(&file);
         Ok(edited)
     }
 
@@ -260,7 +262,7 @@ impl Answers for Page {
 
     fn format(&mut self, file: String) -> Result<Edited, Said> {
         let edited = edit::format(&file, self.file_mut(&file)?)?;
-        self.shelve(&file, false);
+        self.shelve(&file);
         Ok(edited)
     }
 

@@ -80,7 +80,7 @@ impl Source {
         self.links.whole.as_ref().unwrap_or(&self.document)
     }
 
-    /// Changes what was read without a change of the text.
+    /// Changes what was read, but not the text.
     pub fn amend(&mut self, change: impl Fn(&mut Document)) {
         change(&mut self.document);
         if let Some(whole) = &mut self.links.whole {
@@ -93,13 +93,13 @@ impl Source {
         &self.links.others
     }
 
-    /// The files that a change can come from: this one and all that it uses, by their names, with their bytes.
+    /// This file and all that it uses, without the parts of the library: their names and bytes.
     pub fn files(&self) -> impl Iterator<Item = (&str, &[u8])> {
         let used = self.links.others.iter().filter(|o| !o.library).map(|o| &*o.source);
         std::iter::once(self).chain(used).map(|s| (s.name.as_str(), s.bytes.as_slice()))
     }
 
-    /// All problems that were found when files were read: of its own text, and of those that it uses.
+    /// The problems of reading: of its own text, of the used files, and of their `use` lines.
     pub fn read_problems(&self) -> Vec<Problem> {
         self.problems.iter().chain(&self.links.problems).cloned().collect()
     }
@@ -109,40 +109,37 @@ impl Source {
         self.id
     }
 
-    /// The file in which a place lies.
-    pub fn home(&self, at: Span) -> &Source {
-        let other = self.links.others.iter().find(|o| o.source.id == at.file);
-        other.filter(|_| at.file != self.id).map_or(self, |o| &o.source)
+    /// The used file in which a place lies; `None` for a place in this one.
+    fn other(&self, at: Span) -> Option<&Other> {
+        self.links.others.iter().find(|o| o.source.id == at.file)
     }
 
-    /// Leaves out the warnings about files that this one uses: they are told where that file is checked.
+    /// The file in which a place lies: this one, or one that it uses.
+    pub fn home(&self, at: Span) -> &Source {
+        self.other(at).map_or(self, |o| &o.source)
+    }
+
+    /// Leaves out the warnings about files that this one uses. They are told when those files are checked.
     pub fn about(&self, mut problems: Vec<Problem>) -> Vec<Problem> {
-        if !self.links.others.is_empty() {
-            problems.retain(|p| p.at.file == self.id || p.severity() == Severity::Error);
-        }
+        problems.retain(|p| p.severity() == Severity::Error || self.other(p.at).is_none());
         problems
     }
 
-    /// A problem as one of this text: a place in another file becomes the `use` line that leads there, and words.
+    /// The problem with places of this text alone. A place in a used file becomes the `use` line that leads there, and
+    /// the message begins with that place.
     pub fn own(&self, mut problem: Problem) -> Problem {
+        let told = |at: Span, what: &Said| say!("{}: {}", Said::foreign(self.place(at)), what);
         for (at, there) in &mut problem.related {
-            if at.file != self.id {
-                *there = say!("{}: {}", Said::foreign(self.place(*at)), there.clone());
-                *at = self.through(*at);
+            if let Some(other) = self.other(*at) {
+                (*at, *there) = (other.through, told(*at, there));
             }
         }
-        if problem.at.file != self.id {
-            problem.what = say!("{}: {}", Said::foreign(self.place(problem.at)), problem.what);
-            problem.at = self.through(problem.at);
+        if let Some(other) = self.other(problem.at) {
+            problem.what = told(problem.at, &problem.what);
+            problem.at = other.through;
             problem.fixes.clear();
         }
         problem
-    }
-
-    /// The `use` line that leads to the file of a place.
-    fn through(&self, at: Span) -> Span {
-        let other = self.links.others.iter().find(|o| o.source.id == at.file);
-        other.map_or(Span { file: self.id, start: 0, end: 0 }, |o| o.through)
     }
 
     fn take_tree(&mut self) -> Tree {
@@ -184,8 +181,7 @@ impl Source {
     /// The range of a span within the text, rounded to whole characters. Of a place in another file, it is the
     /// `use` line that leads there.
     pub fn range(&self, span: Span) -> std::ops::Range<usize> {
-        let span =
-            if span.file == self.id || self.links.others.is_empty() { span } else { self.through(span) };
+        let span = self.other(span).map_or(span, |o| o.through);
         let floor = |at: u32| {
             let mut at = (at as usize).min(self.text.len());
             while !self.text.is_char_boundary(at) {
