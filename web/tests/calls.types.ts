@@ -23,12 +23,12 @@ export async function refused(run: Run): Promise<void> {
   // @ts-expect-error the server answers for runs only
   await server.call({ do: 'open', file: 'a.g7', text: '' });
   // @ts-expect-error the page has the text of its files
-  await page.call({ do: 'run_start', run: 'a', file: 'a.g7', text: '', lent: [] });
+  await page.call({ do: 'run_start', run: 'a', file: 'a.g7', text: '', uses: [] });
 }
 
 export async function taken(run: Run): Promise<string> {
   await runs.send(run, { do: 'run_seek', ms: 1 });
-  const shared = await server.call({ do: 'run_start', run: 'a', file: 'a.g7', text: '', lent: [] });
+  const shared = await server.call({ do: 'run_start', run: 'a', file: 'a.g7', text: '', uses: [] });
   const swapped = await page.call({ do: 'run_swap', run: 'a', file: 'a.g7' });
   return 'lost' in swapped ? swapped.lost.join() : `${swapped.profile} ${shared.speed}`;
 }

@@ -4,7 +4,7 @@ import { mkdirSync, mkdtempSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
-import { browser, open, serve, until, type Opened, type Site } from './lib';
+import { browser, open, openWith, serve, until, type Opened, type Site } from './lib';
 
 const AXIS = `input order : ARRAY[1..2] OF BOOL
 output out : ARRAY[1..2] OF BOOL
@@ -25,6 +25,8 @@ chart Main {
   initial step 10
   10 -> 10 when ↑order[1]
 }
+
+prove never Axis[1].X0 and Axis[1].X1
 `;
 
 let b: Awaited<ReturnType<typeof browser>>;
@@ -78,6 +80,21 @@ test('a chart of a used file is shown, runs, and is changed in its own file', as
   assert.equal(await p.locator('.inplace input').count(), 0);
   await p.getByRole('button', { name: 'lib/axis.g7', exact: true }).click();
   await until(async () => (await p.getByRole('tab', { name: 'lib/axis.g7' }).getAttribute('aria-selected')) === 'true', 'its own file is shown');
+  await end(p);
+});
+
+test('proofs and a shared run see the charts of used files', async () => {
+  const p = await openWith(b, site, 'main.g7', { bottomOpen: true, bottom: 300 });
+  await p.getByRole('tab', { name: /^Prove/ }).click();
+  const claim = p.getByRole('listitem').filter({ has: p.getByRole('button', { name: 'prove never Axis[1].X0 and Axis[1].X1', exact: true }) }).first();
+  await claim.getByText('proved:', { exact: true }).waitFor({ state: 'attached' });
+  await p.getByRole('button', { name: /^Axis\(i\)/ }).click();
+  await p.getByRole('switch', { name: 'Shared run' }).click();
+  await p.locator('.clock').waitFor();
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'order[1]', exact: true }).click();
+  await oneScan(p);
+  await until(async () => (await p.locator('.live path.on').count()) > 0, 'the run of the server marks the chart');
   await end(p);
 });
 

@@ -203,7 +203,7 @@ test('typing goes on while gestures are under way, and all of it is undone to th
   await page.waitForTimeout(800);
   const typed = await text(page);
   assert.equal(await textOf(page), typed);
-  assert.equal(typed.match(/note/g)?.length, 4);
+  assert.equal(typed.match(/note/g)?.length, 4, typed);
   const undo = page.getByRole('button', { name: 'Undo', exact: true });
   for (let n = 0; n < 80 && (await undo.isEnabled()); n++) {
     await undo.click();

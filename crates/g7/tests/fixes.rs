@@ -135,6 +135,17 @@ fn watch_checks_again_when_a_file_changes_or_comes() {
 }
 
 #[test]
+fn watch_looks_at_the_files_that_a_chart_uses() {
+    let folder = Folder::with(&format!("use 'lib/modes.g7'\n{PINGPONG}"));
+    folder.write("lib/modes.g7", "type Mode : (Off, On)\n");
+    let mut running = Running::g7(&folder, &["check", "--watch", "chart.g7"]);
+    running.until("1 file: no problems");
+    running.until("waiting for a change");
+    folder.write("lib/modes.g7", "type Mode : (Off, Off)\n");
+    running.until("1 file: 1 error");
+}
+
+#[test]
 fn fmt_shows_what_would_change_and_writes_nothing() {
     let untidy = "input a:BOOL\nchart G {\n  initial step 1\n  1 -> 1 when a\n}\n";
     let folder = Folder::with(untidy);

@@ -93,6 +93,23 @@ fn a_page_sees_starts_and_stops_the_controller() {
 }
 
 #[test]
+fn a_change_of_a_used_file_is_a_change_of_the_chart() {
+    let folder = folder(1);
+    folder.write("lib/io.g7", "type Mode : (Off, On)\n");
+    folder.write("chart.g7", format!("use 'lib/io.g7'\n{CHART}{PLANT}"));
+    let station = Station::new(&folder, &["--simulate"]);
+    let mut page = station.page();
+    page.becomes("run");
+    let uses = json!([{ "file": "lib/io.g7", "text": "type Mode : (Off, On)\n" }]);
+    assert_eq!(page.seen["told"]["uses"], uses, "the page draws the charts of used files as well");
+    assert_eq!(page.seen["file"]["differs"], false);
+    folder.write("lib/io.g7", "type Mode : (Off, On, Automatic)\n");
+    page.until("the file differs", |page| page.seen["file"]["differs"] == true);
+    assert_eq!(page.ok(json!({ "do": "operator_change" })), json!({ "lost": [] }));
+    assert_eq!(station.interrupt(), 0);
+}
+
+#[test]
 fn a_chart_is_changed_while_it_runs_and_the_change_is_taken_back() {
     let folder = folder(1);
     let station = Station::new(&folder, &["--simulate"]);

@@ -29,12 +29,13 @@ pub struct File {
     /// The language of the reader: of hover, completion and the titles of fixes.
     pub language: Language,
     /// Texts of other files, those that it uses among them.
-    texts: Arc<Texts>,
-    /// The names of the files that it uses, and that those use; also of files that are not there.
+    texts: Texts,
+    /// The paths, from its folder, of the files that it uses and that those use; also of files that are not there.
     pub uses: Vec<String>,
 }
 
-/// Texts of files that others use, by their names. `None`: there is no such file. No entry: nobody has looked yet.
+/// Texts of files that a file uses, by their paths from its folder. `None`: there is no such file. No entry: nobody has
+/// looked yet.
 pub type Texts = BTreeMap<String, Option<Arc<str>>>;
 
 /// The number of each open file in its own places. The files that it uses have other numbers.
@@ -78,7 +79,7 @@ impl File {
             imported,
             history: History::default(),
             language: Language::default(),
-            texts: Arc::default(),
+            texts: Texts::new(),
             uses: Vec::new(),
             source,
         };
@@ -194,10 +195,11 @@ impl File {
         !self.source.has_errors()
     }
 
-    /// Takes the texts of other files. Returns true if that of a used file has changed.
-    pub fn lend(&mut self, texts: &Arc<Texts>) -> bool {
-        let before = std::mem::replace(&mut self.texts, Arc::clone(texts));
-        let changed = self.uses.iter().any(|name| before.get(name) != self.texts.get(name));
+    /// Takes texts of other files. Returns true if that of a used file has changed.
+    pub fn lend(&mut self, texts: Texts) -> bool {
+        let changed =
+            self.uses.iter().any(|path| texts.get(path).is_some_and(|t| self.texts.get(path) != Some(t)));
+        self.texts.extend(texts);
         if changed {
             self.version += 1;
             self.judge();
@@ -205,25 +207,30 @@ impl File {
         changed
     }
 
-    /// The texts of the files that it uses, as far as it was lent them.
-    pub fn lent(&self) -> impl Iterator<Item = (&String, &Option<Arc<str>>)> {
-        self.uses.iter().filter_map(|name| self.texts.get_key_value(name))
+    /// Forgets the text of another file, so that it is asked for again.
+    pub fn forget(&mut self, path: &str) {
+        if self.texts.remove(path).is_some() {
+            self.judge();
+        }
     }
 
-    /// The names of the files that it uses, as far as it was not lent their texts.
+    /// The texts of the files that it uses, as far as it was lent them.
+    pub fn lent(&self) -> impl Iterator<Item = (&String, &Option<Arc<str>>)> {
+        self.uses.iter().filter_map(|path| self.texts.get_key_value(path))
+    }
+
+    /// The paths of the files that it uses, as far as it was not lent their texts.
     pub fn wants(&self) -> impl Iterator<Item = &String> {
-        self.uses.iter().filter(|name| !self.texts.contains_key(*name))
+        self.uses.iter().filter(|path| !self.texts.contains_key(*path))
     }
 
     /// Joins the items of the files that it uses with its own.
     fn link(&mut self) {
         self.uses.clear();
-        let (name, texts, uses) = (self.source.name.clone(), &self.texts, &mut self.uses);
+        let (texts, uses) = (&self.texts, &mut self.uses);
         self.source.link(&mut |path| {
-            let name = g7_rig::named(&name, path);
-            let text = texts.get(&name).cloned();
-            uses.push(name);
-            match text {
+            uses.push(path.to_owned());
+            match texts.get(path) {
                 Some(Some(text)) => Ok(text.as_bytes().to_vec()),
                 Some(None) => Err(say!("there is no such file")),
                 None => Err(say!("it was not read")),

@@ -1,5 +1,8 @@
 //! The form of answers: `{"ok":…}` or `{"no":"a sentence"}`, and those that are a single text.
 
+use std::sync::Arc;
+
+use g7_ide::{File, Texts};
 use g7_model::Said;
 use serde::{Deserialize, Serialize};
 
@@ -53,8 +56,22 @@ pub(crate) struct Breaks {
 #[derive(Debug, Deserialize, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields = nullable))]
 pub(crate) struct Shelved {
-    /// Its name.
+    /// Its name; where that one is given as well, its path from the folder of that one.
     pub(crate) file: String,
     /// Its text; none if it is not there.
     pub(crate) text: Option<String>,
+}
+
+/// The files that an open file uses.
+pub(crate) fn shelved(file: &File) -> Vec<Shelved> {
+    let one = |(path, text): (&String, &Option<Arc<str>>)| Shelved {
+        file: path.clone(),
+        text: text.as_deref().map(str::to_owned),
+    };
+    file.lent().map(one).collect()
+}
+
+/// Their texts.
+pub(crate) fn shelf(files: Option<Vec<Shelved>>) -> Texts {
+    files.into_iter().flatten().map(|f| (f.file, f.text.map(Arc::from))).collect()
 }

@@ -11,13 +11,11 @@
 //! whole program, so it never answers this way. What the first module does not contain is decided where it is
 //! answered, by [`not_here`].
 
-use std::sync::Arc;
-
 use g7_ide::{File, convert};
 use g7_model::{FileId, Language, Problem, Said, Span, codes};
 use serde::{Deserialize, Serialize};
 
-use crate::answer::{Answer, Shelved};
+use crate::answer::{Answer, Shelved, shelf, shelved};
 use crate::request::Request;
 
 /// True in the program that answers everything itself.
@@ -57,18 +55,14 @@ pub(crate) struct Lent {
 
 impl Lent {
     pub(crate) fn new(name: &str, file: &File) -> Lent {
-        let uses = file
-            .lent()
-            .map(|(name, text)| Shelved { file: name.clone(), text: text.as_deref().map(str::to_owned) });
-        Lent { file: name.to_owned(), text: file.text().to_owned(), uses: Some(uses.collect()) }
+        Lent { file: name.to_owned(), text: file.text().to_owned(), uses: Some(shelved(file)) }
     }
 
     /// The file with its text.
-    pub(crate) fn file(&self, language: Language) -> Result<File, Said> {
-        let mut file = File::open_native(&self.file, self.text.clone())?;
+    pub(crate) fn file(self, language: Language) -> Result<File, Said> {
+        let mut file = File::open_native(&self.file, self.text)?;
         file.language = language;
-        let texts = self.uses.iter().flatten().map(|u| (u.file.clone(), u.text.as_deref().map(Arc::from)));
-        file.lend(&Arc::new(texts.collect()));
+        file.lend(shelf(self.uses));
         Ok(file)
     }
 }

@@ -8,7 +8,7 @@ use g7_ide::{File, OWN};
 use g7_model::chart_in;
 use g7_model::instances::own_instances;
 use g7_model::{Document, Nanos, ProfileName, Switch};
-use g7_rig::Source;
+use g7_rig::{Source, named};
 use serde::Serialize;
 
 use crate::drawing::{opens, sort};
@@ -127,8 +127,8 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         scan_ms: scan.unwrap_or(SCAN).as_millis(),
         plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
         tests: tests.collect(),
-        uses: file.uses.clone(),
-        wants: file.wants().cloned().collect(),
+        uses: file.uses.iter().map(|path| named(name, path)).collect(),
+        wants: file.wants().map(|path| named(name, path)).collect(),
         parts: parts.map(|o| o.path.clone()).collect(),
     }
 }

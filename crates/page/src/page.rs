@@ -7,8 +7,9 @@ use g7_edit::{Gesture, ItemId};
 use g7_ide::gestures;
 use g7_ide::{File, Texts};
 use g7_model::{Language, Said, say};
+use g7_rig::named;
 
-use crate::answer::{self, Answer, Before, Breaks, Shelved, Style, Text, ok};
+use crate::answer::{self, Answer, Before, Breaks, Shelved, Style, Text, ok, shelf, shelved};
 use crate::between::{self, Between, Lent, WHOLE};
 use crate::edit::{self, Edited};
 use crate::export::{self, Form, Out};
@@ -31,12 +32,17 @@ pub struct Page {
     proofs: BTreeMap<String, Proof>,
     shown: Shown,
     language: Language,
-    /// The texts of files that open files use.
-    texts: Arc<Texts>,
+    /// The texts of files that open files use, as they are on the disk; `None` for a file that is not there.
+    texts: BTreeMap<String, Option<Arc<str>>>,
 }
 
 fn not_open(file: &str) -> Said {
     say!("{} is not open", Said::foreign(file))
+}
+
+/// True if one of the files uses the file of this name.
+fn is_used(files: &BTreeMap<String, File>, name: &str) -> bool {
+    files.iter().any(|(head, file)| file.uses.iter().any(|path| named(head, path) == name))
 }
 
 fn no_run(name: &str) -> Said {
@@ -86,8 +92,8 @@ impl Page {
                 }
                 let mut page = Page { language: self.language, ..Page::default() };
                 for lent in files {
-                    let file = lent.file(page.language)?;
-                    page.files.insert(lent.file, file);
+                    let name = lent.file.clone();
+                    page.files.insert(name, lent.file(page.language)?);
                 }
                 page.answer(ask)
             }
@@ -130,29 +136,27 @@ impl Page {
 
     /// The text of a file is new: lends it to the open files that use it, and those that it uses to the file.
     fn shelve(&mut self, name: &str) {
-        let Some(file) = self.files.get(name) else { return };
-        let used = self.files.values().any(|f| f.uses.iter().any(|used| used == name));
-        if used {
-            Arc::make_mut(&mut self.texts).insert(name.to_owned(), Some(file.text().into()));
-        }
-        if used || file.wants().next().is_some() {
+        let wants = self.files.get(name).is_some_and(|f| f.wants().next().is_some());
+        if wants || is_used(&self.files, name) {
             self.lend_all();
         }
     }
 
-    /// Lends every open file the texts that there are.
+    /// Lends every open file the texts that it uses: of open files the present ones, of others those of the disk.
     fn lend_all(&mut self) {
-        // A file that is wanted may be open, and may want another one.
+        // A file that was lent may use another one.
         for _ in 0..MOST {
-            let wanted: Vec<String> = self.files.values().flat_map(File::wants).cloned().collect();
-            let texts = Arc::make_mut(&mut self.texts);
-            for (name, file) in wanted.into_iter().filter_map(|w| Some((w.clone(), self.files.get(&w)?))) {
-                texts.insert(name, Some(file.text().into()));
-            }
-            let texts = Arc::clone(&self.texts);
+            let text = |name: String| match self.files.get(&name) {
+                Some(open) => Some(Some(Arc::from(open.text()))),
+                None => self.texts.get(&name).cloned(),
+            };
+            let texts = |head: &str, file: &File| -> Texts {
+                file.uses.iter().filter_map(|path| Some((path.clone(), text(named(head, path))?))).collect()
+            };
+            let all: Vec<Texts> = self.files.iter().map(|(head, file)| texts(head, file)).collect();
             let mut changed = false;
-            for file in self.files.values_mut() {
-                changed |= file.lend(&texts);
+            for (file, texts) in self.files.values_mut().zip(all) {
+                changed |= file.lend(texts);
             }
             if !changed {
                 break;
@@ -181,9 +185,14 @@ impl Page {
 }
 
 impl Answers for Page {
-    fn open(&mut self, name: String, text: String) -> Result<Overview, Said> {
-        let file = between::open(&name, text)?;
+    fn open(&mut self, name: String, text: String, uses: Option<Vec<Shelved>>) -> Result<Overview, Said> {
+        let mut file = between::open(&name, text)?;
+        file.lend(shelf(uses));
         self.put(name, file)
+    }
+
+    fn used(&mut self, file: String) -> Result<Vec<Shelved>, Said> {
+        Ok(shelved(self.file(&file)?))
     }
 
     fn close(&mut self, file: String) -> Result<(), Said> {
@@ -191,18 +200,17 @@ impl Answers for Page {
         self.proofs.remove(&file);
         self.shown.forget(&file);
         // The disk may have another text: those that use it ask again.
-        if Arc::make_mut(&mut self.texts).remove(&file).is_some() {
-            self.lend_all();
+        self.texts.remove(&file);
+        self.texts.retain(|name, _| is_used(&self.files, name));
+        for (head, other) in &mut self.files {
+            let path = other.uses.iter().find(|path| named(head, path) == file).cloned();
+            path.into_iter().for_each(|path| other.forget(&path));
         }
         Ok(())
     }
 
     fn lend(&mut self, files: Vec<Shelved>) -> Result<(), Said> {
-        let texts = Arc::make_mut(&mut self.texts);
-        for Shelved { file, text } in files {
-            let open = self.files.get(&file).map(|f| f.text().to_owned());
-            texts.insert(file, open.or(text).map(Arc::from));
-        }
+        self.texts.extend(shelf(Some(files)));
         self.lend_all();
         Ok(())
     }

@@ -67,8 +67,12 @@ macro_rules! requests {
 }
 
 requests! {
-    /// Opens a text under a name; a file that is imported gets another name.
-    fn open(file: String, text: String) -> Overview;
+    /// Opens a text under a name; a file that is imported gets another name. `uses` are texts of files that it uses, by
+    /// their paths from its folder; those that are missing are wanted.
+    fn open(file: String, text: String, uses: Option<Vec<Shelved>>) -> Overview;
+
+    /// The texts of the files that a file uses, by their paths from its folder.
+    fn used(file: String) -> Vec<Shelved>;
 
     /// Forgets a file.
     fn close(file: String) -> ();

@@ -1,5 +1,7 @@
 //! Files that use others in the page: what it asks for, and what follows when one of them changes.
 
+#![allow(clippy::disallowed_methods, reason = "the common part reads the examples")]
+
 mod common;
 
 use common::Asked;
@@ -67,6 +69,24 @@ fn a_used_file_that_is_open_is_seen_as_it_is_there() {
     // When it is closed, the head asks for what the disk has.
     page.ok(json!({ "do": "close", "file": "lib/axis.g7" }));
     assert_eq!(page.ok(json!({ "do": "look", "file": "a.g7" }))["wants"], json!(["lib/axis.g7"]));
+}
+
+#[test]
+fn a_text_is_opened_with_the_files_that_it_uses() {
+    let mut page = Asked::default();
+    page.ok(json!({ "do": "lend", "files": [{ "file": "cell/lib/axis.g7", "text": AXIS }] }));
+    page.ok(json!({ "do": "open", "file": "cell/a.g7", "text": MAIN }));
+    let uses = page.ok(json!({ "do": "used", "file": "cell/a.g7" }));
+    assert_eq!(uses, json!([{ "file": "lib/axis.g7", "text": AXIS }]), "by its path from the folder");
+    // Under any name: a proof or a comparison needs no more.
+    let look = page.ok(json!({ "do": "open", "file": "0/asked.g7", "text": MAIN, "uses": uses }));
+    assert_eq!((&look["wants"], &look["problems"]), (&json!([]), &json!([])));
+    let report = page.ok(json!({ "do": "prove", "file": "0/asked.g7", "states": 1000, "mib": 16 }));
+    let rows = report["rows"].as_array().expect("answers");
+    let axis = rows.iter().find(|r| r["id"] == "Axis/s/1").expect("a step of the used chart is asked about");
+    assert_eq!(axis["verdict"], "proved");
+    let both = json!({ "do": "compare", "files": ["0/asked.g7", "cell/a.g7"], "profiles": [null, null], "situations": true, "states": 1000, "mib": 16 });
+    assert_eq!(page.ok(both)["is"], json!("equal"));
 }
 
 #[test]

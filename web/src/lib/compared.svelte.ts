@@ -5,7 +5,7 @@ import type { Lane } from '../run/lanes';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
 import { Local, page } from './page';
-import type { ComparedReport, Look, ProofScan } from './protocol';
+import type { ComparedReport, Look, ProofScan, Shelved } from './protocol';
 
 /** Limits of the search one after the other, in pairs of states, and its longest time in ms. */
 const ROUNDS: readonly number[] = [1_000, 16_000, 64_000, 256_000, 1_000_000];
@@ -21,6 +21,8 @@ export interface Side {
   /** The name decides how the text is read. */
   name: string;
   text: string;
+  /** The texts of the files that it uses. */
+  uses: Shelved[];
   /** Null: that of the text, whose rules belong to what is compared. */
   profile: string | null;
 }
@@ -66,7 +68,7 @@ class Comparison {
     this.states = 0;
     const late = window.setTimeout(() => mine() && this.stop(), TIME);
     try {
-      const opened = async (n: number, { name, text }: Side) => (await this.#worker.call({ do: 'open', file: `${n}/${name}`, text })).file;
+      const opened = async (n: number, { name, text, uses }: Side) => (await this.#worker.call({ do: 'open', file: `${n}/${name}`, text, uses })).file;
       const names: [string, string] = [await opened(0, sides[0]), await opened(1, sides[1])];
       const profiles: [string | null, string | null] = [sides[0].profile, sides[1].profile];
       for (const states of ROUNDS) {
@@ -113,7 +115,7 @@ class Comparison {
     // Names of its own: a comparison that was ended meanwhile may still have to close its files.
     const folder = `\u0000compared/${this.#turn}`;
     for (const [n, side] of sides.entries()) {
-      const look = await page.call({ do: 'open', file: `${folder}/${n}/${side.name}`, text: side.text });
+      const look = await page.call({ do: 'open', file: `${folder}/${n}/${side.name}`, text: side.text, uses: side.uses });
       const started = await page.call({ do: 'run_start', file: look.file, run: look.file, plant: 'none', profile: side.profile, moves: runs[n] });
       const run = new Run(started, page, false);
       told.push({ side, look, run, lanes: await lanesOf(run) });

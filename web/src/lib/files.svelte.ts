@@ -106,6 +106,11 @@ export class OpenFile {
     return this.look.uses.includes(name);
   }
 
+  /** The texts of the files that it uses, for another worker or the server. */
+  async used(): Promise<Shelved[]> {
+    return page.call({ do: 'used', file: this.name });
+  }
+
   /** Executes a gesture. */
   edit(gesture: Gesture): Promise<Edited> {
     return this.#turn(() => this.#change({ do: 'edit', file: this.name, gesture }, 'structure'));
@@ -205,24 +210,21 @@ export class OpenFile {
   }
 }
 
-/** The texts that were given to the worker because open files use them; null for a file that is not there. */
-const shelf = new Map<string, string | null>();
-
-/** Gives the worker the texts that a file wants, until it has all of them; returns the newest look at the file. */
-async function lent<L extends Look>(look: L): Promise<L> {
+/** Gives the worker the texts that a file wants, until it has all of them; returns the newest look at the file. A file
+ * that is open under another name than its own has a prefix before that. */
+export async function lent<L extends Look>(look: L, prefix = ''): Promise<L> {
   let now: Look = look;
   while (now.wants.length > 0) {
-    await shelve(now.wants);
+    await shelve(now.wants, prefix);
     now = await page.call({ do: 'look', file: look.file });
   }
   return now === look ? look : { ...look, ...now };
 }
 
 /** Reads files that others use, and gives them to the worker. */
-async function shelve(names: string[]): Promise<void> {
+async function shelve(names: string[], prefix = ''): Promise<void> {
   const read = async (file: string): Promise<Shelved> => {
-    const text = await server.read(file).then((f) => f.text).catch(() => null);
-    shelf.set(file, text);
+    const text = await server.read(file.slice(prefix.length)).then((f) => f.text).catch(() => null);
     return { file, text };
   };
   await page.call({ do: 'lend', files: await Promise.all(names.map(read)) });
@@ -299,11 +301,6 @@ class Files {
     if (!this.list.some((f) => f.uses(name))) return;
     await shelve([name]);
     this.usedChanged(name);
-  }
-
-  /** The texts of the files that a file uses, for a run of the server. */
-  lentTo(file: OpenFile): Shelved[] {
-    return file.look.uses.map((name) => ({ file: name, text: this.find(name)?.text ?? shelf.get(name) ?? null }));
   }
 }
 

@@ -56,7 +56,7 @@ class Proofs {
    * charts loads no module for it. */
   begun = $state(false);
   #worker = new Local('g7-whole.wasm');
-  /** The text that the worker has. */
+  /** The hash of the text that the worker has. */
   #opened = '';
   #turn = 0;
 
@@ -116,14 +116,13 @@ class Proofs {
     await file.settled();
     if (!mine()) return;
     const { hash } = file.look;
-    const { text } = file;
     this.failed = '';
     this.work = { file: file.name, hash, whole, states: 0 };
     let late = 0;
     try {
-      if (this.#opened !== text) await this.#worker.call({ do: 'open', file: FILE, text });
+      if (this.#opened !== hash) await this.#worker.call({ do: 'open', file: FILE, text: file.text, uses: await file.used() });
       if (!mine()) return;
-      this.#opened = text;
+      this.#opened = hash;
       late = window.setTimeout(() => {
         if (!mine()) return;
         this.cut = hash;

@@ -712,7 +712,7 @@ export type Severity = 'error' | 'warning';
 
 /** A file that another one uses. */
 export type Shelved = {
-  /** Its name. */
+  /** Its name; where that one is given as well, its path from the folder of that one. */
   file: string;
   /** Its text; none if it is not there. */
   text?: string | null;
@@ -883,8 +883,11 @@ export type View = { file: string; bindings: Array<Binding> };
 
 /** The contents of each message, beside its name in `do`. */
 export interface Requests {
-  /** Opens a text under a name; a file that is imported gets another name. */
-  open: { file: string; text: string };
+  /** Opens a text under a name; a file that is imported gets another name. `uses` are texts of files that it uses, by
+   * their paths from its folder; those that are missing are wanted. */
+  open: { file: string; text: string; uses?: Array<Shelved> | null };
+  /** The texts of the files that a file uses, by their paths from its folder. */
+  used: { file: string };
   /** Forgets a file. */
   close: { file: string };
   /** Gives the texts of files that open files use; without a text, it is not there. */
@@ -1012,6 +1015,7 @@ export interface Requests {
 /** The answer to each message. */
 export interface Answers {
   open: Look;
+  used: Array<Shelved>;
   close: null;
   lend: null;
   speak: null;

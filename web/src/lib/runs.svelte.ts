@@ -168,7 +168,7 @@ class Runs {
     if (!run || run.hash === file.look.hash) return;
     try {
       const wish = { do: 'run_swap', run: run.name, file: file.name, force } as const;
-      const answer = await (run.shared ? server.call({ ...wish, text: file.text, lent: files.lentTo(file) }) : page.call(wish));
+      const answer = await (run.shared ? server.call({ ...wish, text: file.text, uses: await file.used() }) : page.call(wish));
       run.refused = null;
       if ('lost' in answer) {
         run.losing = quiet ? null : answer.lost;
@@ -191,7 +191,7 @@ class Runs {
     const known = runs.find((r) => r.file === file.name);
     const started = await (known
       ? server.call({ do: 'watch', run: known.run })
-      : server.call({ do: 'run_start', ...this.wishes(file.name), run: file.name, file: file.name, text: file.text, lent: files.lentTo(file) }));
+      : server.call({ do: 'run_start', ...this.wishes(file.name), run: file.name, file: file.name, text: file.text, uses: await file.used() }));
     const before = this.of(file.name);
     // The run must be known before any waiting, because its frames come from now on.
     const run = new Run(started, server, true);

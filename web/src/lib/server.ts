@@ -198,7 +198,7 @@ class Server implements Door {
   }
 
   /** Sends a message to a shared run, or to the server itself. */
-  call<N extends keyof WithText>(message: { do: N; text: string; lent: Shelved[] } & Message<N>): Promise<WithText[N]>;
+  call<N extends keyof WithText>(message: { do: N; text: string; uses: Shelved[] } & Message<N>): Promise<WithText[N]>;
   call<N extends RunName>(message: { do: N } & Message<N>): Promise<Answers[N]>;
   call<N extends keyof Own>(message: { do: N } & Own[N]['asked']): Promise<Own[N]['told']>;
   async call(message: object): Promise<unknown> {

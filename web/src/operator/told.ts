@@ -1,6 +1,7 @@
 // The messages of a running controller, as `crates/g7/src/operator/board.rs` writes them. Times are
 // seconds of the controller's clock.
 import type { Part as RunPart } from '../lib/instances.svelte';
+import type { Shelved } from '../lib/protocol';
 
 export interface Signal {
   name: string;
@@ -44,6 +45,8 @@ export interface Description {
   title: string;
   file: string;
   text: string;
+  /** The files that it uses. */
+  uses: Shelved[];
   profile: string;
   period_ms: number;
   plant?: string | null;

@@ -1,5 +1,6 @@
 // Small pictures of files for the gallery, drawn by the same crates as the page: one after the
 // other, and only those that become visible.
+import { lent } from '../lib/files.svelte';
 import { page } from '../lib/page';
 import type { Box } from '../lib/protocol';
 import { drawn, svgOf } from '../lib/redrawn';
@@ -35,7 +36,8 @@ async function draw(path: string): Promise<Thumb> {
 }
 
 export async function picture(path: string, text: string): Promise<Thumb> {
-  const { file, charts, tests, plants } = await page.call({ do: 'open', file: `\u0000gallery/${path}`, text });
+  const prefix = '\u0000gallery/';
+  const { file, charts, tests, plants } = await lent(await page.call({ do: 'open', file: prefix + path, text }), prefix);
   try {
     const own = charts.filter((c) => !c.of && c.kind === 'chart');
     const chart = own[0] ?? charts[0];

@@ -43,7 +43,7 @@ pub(super) fn lend(file: &mut File, uri: &Uri, why: Why<'_>, open: &dyn Fn(&Path
             let read = || open(&path(name)).or_else(|| on_disk(&folder, name)).map(Arc::from);
             known.entry(name.clone()).or_insert_with(read);
         }
-        if !file.lend(&Arc::new(known.clone())) {
+        if !file.lend(known.clone()) {
             return;
         }
     }

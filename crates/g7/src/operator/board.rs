@@ -10,7 +10,7 @@ use g7_online::{
     FORCES, Forced, Happened, LONGEST, Mode, Paces, Quality, Sight, Spread, Target, USUAL, WhileBad, Wire,
 };
 use g7_page::{Places, Show};
-use g7_rig::{Activity, Item, Role};
+use g7_rig::{Activity, Item, Other, Role};
 use serde_json::{Map, Value, json};
 
 use super::names::{Known, Names};
@@ -219,6 +219,7 @@ impl Board {
             "title": title(&source.name),
             "file": source.name,
             "text": source.text,
+            "uses": source.others().iter().filter(|o| !o.library).map(used).collect::<Vec<_>>(),
             "profile": bench.compiled.unit.profile.name(),
             "period_ms": bench.period.as_millis(),
             "plant": bench.plant.as_ref().map(|plant| plant.name.clone()),
@@ -512,4 +513,8 @@ fn point(names: &Names, item: &Item) -> At {
         Role::Input(_) | Role::Output if plant => At::Plant,
         Role::Input(_) | Role::Output => At::Free,
     }
+}
+/// A file that the chart uses, for the page, which opens the text with it.
+fn used(other: &Other) -> Value {
+    json!({ "file": other.path, "text": other.source.text })
 }

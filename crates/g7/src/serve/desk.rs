@@ -184,13 +184,8 @@ impl Desk {
         // The file is open only as long as the run needs it.
         let file = wish.get("file").and_then(|f| f.as_str()).unwrap_or_default().to_owned();
         // The page sends the files that this one uses as it sees them, saved or not.
-        if let Some(lent) = wish.remove("lent") {
-            let given = self.page.call(&json!({ "do": "lend", "files": lent }).to_string());
-            if ok(&given).is_none() {
-                return given;
-            }
-        }
-        let opened = self.page.call(&json!({ "do": "open", "file": file, "text": text }).to_string());
+        let open = json!({ "do": "open", "file": file, "text": text, "uses": wish.remove("uses") });
+        let opened = self.page.call(&open.to_string());
         let Some(Opened { file: open }) = ok(&opened).and_then(|v| serde_json::from_str(v.get()).ok()) else {
             return opened;
         };
