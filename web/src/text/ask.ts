@@ -31,7 +31,9 @@ export function completion(file: OpenFile) {
     const before = context.matchBefore(/[\p{L}\p{N}_.%`]+/u);
     if (!before && !context.explicit) return null;
     await file.settled();
-    if (context.aborted) return null;
+    // A change before the place, as by a gesture, moves it: an answer would belong to another place.
+    const moved = context.view?.state.sliceDoc(0, context.pos) !== context.state.sliceDoc(0, context.pos);
+    if (context.aborted || moved) return null;
     const found = await page.call({ do: 'complete', file: file.name, at: context.pos }).catch(() => null);
     if (!found || found.items.length === 0) return null;
     const options = found.items.map((item): Completion => ({
