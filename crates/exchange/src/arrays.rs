@@ -1,35 +1,45 @@
-//! Puts single variables in the place of arrays, for formats and tools that have none.
+//! Puts single variables in the place of arrays.
 //!
 //! ```text
 //! model::Document -> here -> the writer of a format
 //! ```
 //!
-//! `a[2]` becomes `a_2`. An element with a variable index (`a[i]`) and the assignment of a whole array stay as they
-//! are, so the writer reports them at their place.
+//! `a[2]` becomes `a_2`, because an action of the standard drives a variable and no element. An array of which an
+//! element is chosen while the chart runs (`a[i]`), or that is copied as a whole, is open: a format with arrays gets it
+//! as an array, and its elements that actions drive as single variables, which a `post` copies into it. For a format
+//! without arrays such an element stays as it is, so that the writer reports it at its place.
 
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
+use g7_iec::nodes;
 use g7_iec::scopes::{Ref, Scopes, VarKey};
 use g7_model::visit::Visitor as Reader;
-use g7_model::visit_mut::{self, Visitor};
+use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    ActionKind, Block, ChartItem, Document, Expr, ExprKind, Item, Name, Order, Path, Span, Target, VarDecl,
-    VarKind, filled,
+    ActionKind, Block, Body, ChartItem, Document, Expr, ExprKind, Item, Name, Order, Path, Problem, Span,
+    Stmt, StmtKind, Target, VarDecl, VarKind, codes, filled, say,
 };
 
 /// The name of the variable for each element of an array, by the indexes of the element.
-type Elements = HashMap<Vec<i128>, Box<str>>;
+type Elements = BTreeMap<Vec<i128>, Box<str>>;
 
-/// The document with single variables for its arrays.
-pub(crate) fn singled(document: &Document) -> Cow<'_, Document> {
+/// The document with single variables for its arrays, and what is different there. Open arrays stay if `keeps` says that
+/// the format has arrays.
+pub(crate) fn singled(document: &Document, keeps: bool) -> (Cow<'_, Document>, Vec<Problem>) {
     if !variables(document).any(|(_, v)| v.array.is_some()) {
-        return Cow::Borrowed(document);
+        return (Cow::Borrowed(document), Vec::new());
     }
-    let mut single = Single::of(document);
+    let mut single = Single::of(document, keeps);
     let mut own = document.clone();
     own.items = own.items.into_iter().flat_map(|item| single.item(item)).collect();
-    Cow::Owned(own)
+    let copies = single.copies(None);
+    if let Some(at) = copies.first().map(|s| s.at.0) {
+        let post = Item::Post(Body::St(nodes::block(copies, at)), at.into());
+        let place = own.items.iter().position(|i| matches!(i, Item::Post(..))).unwrap_or(own.items.len());
+        own.items.insert(place, post);
+    }
+    (Cow::Owned(own), single.problems)
 }
 
 /// All declarations, each with the name of its chart.
@@ -64,30 +74,98 @@ impl<'d> Reader<'d> for Locals<'d> {
 
 struct Single<'d> {
     scopes: Scopes<'d>,
+    /// The elements of each array that are single variables: of an open one, those that actions drive.
     arrays: HashMap<VarKey<'d>, Elements>,
+    /// The arrays that stay.
+    open: HashSet<VarKey<'d>>,
     locals: Locals<'d>,
     /// The chart that is being rewritten.
     chart: Option<usize>,
+    problems: Vec<Problem>,
 }
 
 impl<'d> Single<'d> {
-    fn of(document: &'d Document) -> Single<'d> {
+    fn of(document: &'d Document, keeps: bool) -> Single<'d> {
         let mut locals = Locals::default();
         locals.document(document);
         let scopes = Scopes::new(document);
-        let mut made = Single { scopes, arrays: HashMap::new(), locals, chart: None };
+        let (arrays, open, problems) = (HashMap::new(), HashSet::new(), Vec::new());
+        let mut made = Single { scopes, arrays, open, locals, chart: None, problems };
+        let uses = if keeps { made.uses(document) } else { Uses::default() };
+        made.open = uses.chosen;
         let mut taken: HashSet<String> =
             variables(document).flat_map(|(_, v)| &v.names).map(|n| n.text.to_lowercase()).collect();
         for (chart, v) in variables(document) {
             made.chart = chart.and_then(|c| made.scopes.chart_named(c));
             let Some(indexes) = made.indexes(v) else { continue };
             for name in &v.names {
-                let elements = indexes.iter().map(|i| (i.clone(), free(&name.text, i, &mut taken))).collect();
-                made.arrays.insert((made.chart, &name.text), elements);
+                let key = (made.chart, &*name.text);
+                let open = made.open.contains(&key);
+                let mut own = indexes.clone();
+                if open {
+                    own.retain(|i| uses.driven.contains(&(key, i.clone())));
+                    made.tell(v, name, !own.is_empty() && uses.written.contains(&key));
+                }
+                let elements = own.into_iter().map(|i| (i.clone(), free(&name.text, &i, &mut taken)));
+                made.arrays.insert(key, elements.collect());
             }
         }
         made.chart = None;
         made
+    }
+
+    /// Tells what is different for an array that stays.
+    fn tell(&mut self, v: &VarDecl, name: &Name, both: bool) {
+        let text = &name.text;
+        let mut put = |what| self.problems.push(Problem::new(&codes::DIFFERENT, name.at.0, what));
+        if v.kind != VarKind::Const {
+            put(say!(
+                "an index outside of the bounds of `{text}` is a fault here, and there whatever the PLC does"
+            ));
+        }
+        if both {
+            put(say!(
+                "elements of `{text}` follow actions and are written by statements as well; the actions come last there"
+            ));
+        }
+    }
+
+    /// How the arrays of a document are used.
+    fn uses(&mut self, document: &'d Document) -> Uses<'d> {
+        let mut own = document.clone();
+        let mut looking = Looking { single: self, found: Uses::default() };
+        for item in &mut own.items {
+            let chart = if let Item::Chart(c) = &*item { Some(&*c.name.text) } else { None };
+            looking.single.chart = chart.and_then(|c| looking.single.scopes.chart_named(c));
+            visit_mut::item(item, &mut looking);
+            looking.driven(item);
+        }
+        let found = looking.found;
+        self.chart = None;
+        found
+    }
+
+    /// The array that a path means.
+    fn array(&self, path: &Path) -> Option<VarKey<'d>> {
+        let Some(Ref::Var(key)) = self.scopes.refer(self.chart, &path.names) else { return None };
+        self.scopes.decl(key)?.array.as_ref().map(|_| key)
+    }
+
+    /// The assignments that bring what actions drive into the open arrays of a chart, or of the file.
+    fn copies(&self, chart: Option<usize>) -> Vec<Stmt> {
+        let mut list = Vec::new();
+        let mut of_chart: Vec<_> = self.arrays.iter().filter(|(key, _)| key.0 == chart).collect();
+        of_chart.sort_by_key(|(key, _)| key.1);
+        for (key, elements) in of_chart.into_iter().filter(|(key, _)| self.open.contains(*key)) {
+            let at = self.scopes.decl(*key).map_or(Span::default(), |d| d.at.0);
+            for (index, single) in elements {
+                let index = index.iter().map(|n| nodes::int(*n, at)).collect();
+                let path = Box::new(nodes::path(&[key.1], at));
+                let element = Expr { kind: ExprKind::Element(path, index, None), at: at.into() };
+                list.push(nodes::assign(element, nodes::name(&[single], at), at));
+            }
+        }
+        list
     }
 
     /// The indexes of all elements, in their order.
@@ -125,6 +203,10 @@ impl<'d> Single<'d> {
                     item => vec![item],
                 });
                 chart.items = items.collect();
+                let copies = self.copies(self.chart);
+                if let Some(at) = copies.first().map(|s| s.at.0) {
+                    chart.items.push(ChartItem::Post(Body::St(nodes::block(copies, at)), at.into()));
+                }
                 one.items.push(Item::Chart(chart));
             }
             item => one.items.push(item),
@@ -138,28 +220,42 @@ impl<'d> Single<'d> {
     /// The declaration, or one for each element.
     fn declared(&mut self, mut v: VarDecl) -> Vec<VarDecl> {
         v.init.iter_mut().chain(&mut v.safe).for_each(|e| visit_mut::expr(e, self));
-        if v.array.is_some() { self.elements(&v) } else { vec![v] }
+        if v.array.is_none() {
+            return vec![v];
+        }
+        v.names.iter().flat_map(|name| self.parts(&v, name)).collect()
     }
 
-    fn elements(&self, v: &VarDecl) -> Vec<VarDecl> {
+    /// An array if it is open, and its elements that are single variables.
+    fn parts(&self, v: &VarDecl, name: &Name) -> Vec<VarDecl> {
+        let key = (self.chart, &*name.text);
+        let (Some(elements), Some(indexes)) = (self.arrays.get(&key), self.indexes(v)) else {
+            return Vec::new();
+        };
         let mut given: Vec<&Expr> = Vec::new();
         if let Some(ExprKind::List(list)) = v.init.as_ref().map(|e| &e.kind) {
             given.extend(list.iter().flat_map(|(n, e)| std::iter::repeat_n(e, *n as usize)));
         }
-        let indexes = self.indexes(v).unwrap_or_default();
+        let value = |place: usize| given.get(place).copied().or(v.usual.as_deref()).cloned();
         let mut all = Vec::new();
-        for name in &v.names {
-            let Some(elements) = self.arrays.get(&(self.chart, &*name.text)) else { continue };
-            for (place, indexes) in indexes.iter().enumerate() {
-                let Some(text) = elements.get(indexes) else { continue };
-                all.push(VarDecl {
-                    names: vec![Name::new(text.clone(), name.at.0)],
-                    array: None,
-                    of: None,
-                    init: given.get(place).map(|e| (*e).clone()).or_else(|| v.usual.as_deref().cloned()),
-                    ..v.clone()
-                });
-            }
+        let open = self.open.contains(&key);
+        if open {
+            let values: Vec<(u32, Expr)> = (0..indexes.len()).map_while(value).map(|e| (1, e)).collect();
+            let list = Expr { kind: ExprKind::List(values), at: v.at };
+            let own = v.init.clone().filter(|_| v.usual.is_none());
+            let init = own.or_else(|| v.usual.is_some().then_some(list));
+            all.push(VarDecl { names: vec![name.clone()], of: None, usual: None, init, ..v.clone() });
+        }
+        for (place, indexes) in indexes.iter().enumerate() {
+            let Some(text) = elements.get(indexes) else { continue };
+            all.push(VarDecl {
+                kind: if open { VarKind::Var } else { v.kind },
+                names: vec![Name::new(text.clone(), name.at.0)],
+                array: None,
+                of: None,
+                init: value(place),
+                ..v.clone()
+            });
         }
         all
     }
@@ -182,6 +278,78 @@ impl Visitor for Single<'_> {
             single.names.extend(bit.as_deref().cloned());
             e.kind = ExprKind::Path(single);
         }
+    }
+
+    fn all_bodies(&self) -> bool {
+        true
+    }
+}
+
+/// How the arrays of a document are used.
+#[derive(Default)]
+struct Uses<'d> {
+    /// Those of which an element is chosen while the chart runs, or that are copied as a whole.
+    chosen: HashSet<VarKey<'d>>,
+    /// Those of these that get a value.
+    written: HashSet<VarKey<'d>>,
+    /// The elements that actions drive.
+    driven: HashSet<(VarKey<'d>, Vec<i128>)>,
+}
+
+struct Looking<'s, 'd> {
+    single: &'s mut Single<'d>,
+    found: Uses<'d>,
+}
+
+impl Looking<'_, '_> {
+    /// Notes the elements that the actions of a chart drive.
+    fn driven(&mut self, item: &Item) {
+        let Item::Chart(chart) = item else { return };
+        for action in chart.steps().flat_map(|s| &s.actions) {
+            if let ActionKind::Qualified { target: Target::Element(e), .. } = &action.kind
+                && let ExprKind::Element(path, index, _) = &e.kind
+                && let Some(key) = self.single.array(path)
+                && let Some(index) = index.iter().map(|e| self.single.whole(e)).collect()
+            {
+                self.found.driven.insert((key, index));
+            }
+        }
+    }
+
+    /// Notes an array that is named as a whole, or by an index that is not known.
+    fn whole(&mut self, e: &Expr, how: Use) {
+        let (path, open) = match &e.kind {
+            ExprKind::Path(path) => (path, true),
+            ExprKind::Element(path, index, _) => {
+                (&**path, index.iter().any(|e| self.single.whole(e).is_none()))
+            }
+            _ => return,
+        };
+        let Some(key) = self.single.array(path).filter(|_| open) else { return };
+        self.found.chosen.insert(key);
+        if how == Use::Write {
+            self.found.written.insert(key);
+        }
+    }
+}
+
+impl Visitor for Looking<'_, '_> {
+    fn expr(&mut self, e: &mut Expr) {
+        self.whole(e, Use::Read);
+    }
+
+    fn stmt(&mut self, stmt: &mut Stmt) {
+        match &stmt.kind {
+            StmtKind::Assign { target, .. } => self.whole(target, Use::Write),
+            StmtKind::Call(_, args) => {
+                args.iter().filter(|a| a.output).for_each(|a| self.whole(&a.value, Use::Write));
+            }
+            _ => {}
+        }
+    }
+
+    fn all_bodies(&self) -> bool {
+        true
     }
 }
 

@@ -34,6 +34,8 @@ pub struct Format {
     reader: Option<Read>,
     writer: Option<Write>,
     in_dialect: Option<fn(&Document, Dialect) -> Written>,
+    /// True if its writer takes arrays.
+    arrays: bool,
 }
 
 /// How a file of each format that is read is recognised, by the word of the format, in the order in which a file
@@ -60,6 +62,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(jgrafchart::import),
         writer: Some(jgrafchart::export),
         in_dialect: None,
+        arrays: false,
     },
     // PLCopen TC6 XML and IEC 61131-10 XML; TC6 XML 2.01 is written.
     Format {
@@ -69,6 +72,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(plcopen::import),
         writer: Some(plcopen::export),
         in_dialect: Some(plcopen::export_for),
+        arrays: true,
     },
     // EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
     Format {
@@ -78,6 +82,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(xmi::import),
         writer: Some(xmi::export),
         in_dialect: None,
+        arrays: false,
     },
     // ClassicLadder 0.7 to 0.9: a project, or its `sequential.csv` alone.
     Format {
@@ -87,6 +92,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(classicladder::import),
         writer: None,
         in_dialect: None,
+        arrays: false,
     },
     // Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`); `.XSF` is written.
     Format {
@@ -96,6 +102,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(controlexpert::import),
         writer: Some(controlexpert::export),
         in_dialect: None,
+        arrays: false,
     },
     // S7-GRAPH: a block exported by TIA Portal's Openness.
     Format {
@@ -105,6 +112,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(s7graph::import),
         writer: None,
         in_dialect: None,
+        arrays: false,
     },
     // Studio 5000 Logix Designer: routines in SFC.
     Format {
@@ -114,6 +122,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(l5x::import),
         writer: None,
         in_dialect: None,
+        arrays: false,
     },
     // IEC 61131-3 in text.
     Format {
@@ -123,6 +132,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(sfc::import),
         writer: Some(sfc::export),
         in_dialect: None,
+        arrays: true,
     },
     // A flowchart in the text of Mermaid, for documents.
     Format {
@@ -132,6 +142,7 @@ pub static FORMATS: [Format; 9] = [
         reader: None,
         writer: Some(mermaid::export),
         in_dialect: None,
+        arrays: false,
     },
 ];
 
@@ -162,21 +173,27 @@ impl Format {
     /// Writes a document, which must have been read without errors; None if the format is not
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
-        self.writer.map(|write| with_plain(document, write))
+        self.writer.map(|write| self.with_plain(document, write))
     }
 
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
-        self.in_dialect.map(|write| with_plain(document, |plain| write(plain, dialect)))
+        self.in_dialect.map(|write| self.with_plain(document, |plain| write(plain, dialect)))
     }
-}
 
-/// Gives a document to a writer as charts and single variables: without parameters, types of its own and arrays.
-fn with_plain<T>(document: &Document, write: impl FnOnce(&Document) -> T) -> T {
-    let typed = declared(document).0;
-    let charts = instantiated(&typed).0;
-    let plain = decomposed(&charts).0;
-    write(&arrays::singled(&held(&plain).0))
+    /// Gives a document to a writer as charts and variables: without parameters and types of its own, and without
+    /// arrays if the format has none.
+    fn with_plain(&self, document: &Document, write: impl FnOnce(&Document) -> Written) -> Written {
+        let typed = declared(document).0;
+        let charts = instantiated(&typed).0;
+        let plain = decomposed(&charts).0;
+        let held = held(&plain).0;
+        let (plain, mut problems) = arrays::singled(&held, self.arrays);
+        let mut written = write(&plain);
+        written.problems.append(&mut problems);
+        written.problems.sort_by_key(|p| (p.at.start, p.at.end));
+        written
+    }
 }
 
 /// The format with this word.

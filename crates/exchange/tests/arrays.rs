@@ -1,13 +1,19 @@
-//! Arrays leave as single variables: the right element for each index, and no element where it is not known.
+//! Arrays leave as single variables: the right element for each index. Where it is not known, they leave as arrays, if
+//! the format has these.
 
 use g7_model::FileId;
 
 /// The IEC 61131-3 text of a chart, and the words at the places of its errors.
 fn sfc(text: &str) -> (String, Vec<&str>) {
+    written(text, "sfc")
+}
+
+fn written<'t>(text: &'t str, form: &str) -> (String, Vec<&'t str>) {
     let (document, mut problems) = g7_syntax::parse(text, FileId(0));
     problems.append(&mut g7_compile::check(&document));
+    problems.retain(|p| p.severity() == g7_model::Severity::Error);
     assert!(problems.is_empty(), "{problems:?}");
-    let written = g7_exchange::named("sfc").and_then(|f| f.write(&document)).expect("it is written");
+    let written = g7_exchange::named(form).and_then(|f| f.write(&document)).expect("it is written");
     let errors = written.problems.iter().filter(|p| p.severity() == g7_model::Severity::Error);
     let words = errors.map(|p| &text[p.at.bytes()]).collect();
     (written.text, words)
@@ -38,15 +44,45 @@ fn a_constant_is_that_of_its_own_chart() {
 #[test]
 fn a_local_variable_is_not_taken_for_the_constant_that_it_hides() {
     let chart = charts("P1 { var c : INT := 2; x[c] := 7 }", "P1 x[0] := 7");
-    let (_, errors) = sfc(&chart);
     // Elsewhere the constant could be known; to refuse it is safe.
-    assert_eq!(errors, ["x[c]", "b[c]", "b[c]"]);
+    for words in ["x[c]", "b[c]"] {
+        assert!(written(&chart, "controlexpert").1.contains(&words), "{words}");
+    }
+    let (text, errors) = sfc(&chart);
+    assert_eq!(errors, Vec::<&str>::new());
+    for line in
+        ["x[Step0_1_c] := 7;", "x[0] := 7;", ":= NOT b[c];", ":= NOT b[H_c];", "x : INT_m1_2 := [4, 2(5)];"]
+    {
+        assert!(text.contains(line), "{line} is missing in\n{text}");
+    }
 }
 
 #[test]
-fn what_has_no_single_variable_is_refused_at_its_place() {
+fn a_format_without_arrays_refuses_an_index_that_is_not_known() {
     let chart = charts("P1 x[x[0]] := 7", "P1 x[1] := x[x[1]]");
-    assert_eq!(sfc(&chart).1, ["x[x[0]]", "x[x[1]]"]);
+    assert!(written(&chart, "controlexpert").1.contains(&"x[x[0]]"));
+    let (text, errors) = sfc(&chart);
+    assert_eq!(errors, Vec::<&str>::new());
+    for line in ["INT_m1_2 : ARRAY[-1..2] OF INT;", "x[x[0]] := 7;", "x[1] := x[x[1]];"] {
+        assert!(text.contains(line), "{line} is missing in\n{text}");
+    }
+}
+
+#[test]
+fn elements_that_actions_drive_are_copied_into_an_open_array() {
+    let (text, errors) = sfc(
+        "profile iec61131\ninput k : INT\noutput one : BOOL\nvar m : ARRAY[1..3] OF BOOL\n\
+         chart G {\n  initial step 0 { N m[2] }\n  step 1 { S m[1] }\n  0 -> 1 when m[2] and one\n  1 -> 0 when k = 3\n}\n\
+         post { one := m[k] }\n",
+    );
+    assert_eq!(errors, Vec::<&str>::new());
+    let at = |line: &str| text.find(line).unwrap_or_else(|| panic!("{line} is missing in\n{text}"));
+    assert!(at("m[1] := m_1;") < at("m[2] := m_2;"));
+    assert!(at("m[2] := m_2;") < at("one := m[k];"));
+    at("m_2(N)");
+    at("m_1(S)");
+    at(":= m_2 AND one;");
+    assert!(!text.contains("m_3"), "{text}");
 }
 
 #[test]

@@ -34,18 +34,26 @@ type Read = fn(&[u8], FileId) -> (Document, Vec<Problem>);
 const FORMS: [(&str, Write, Read); 3] = [
     ("PLCopen XML", whole, plcopen::import),
     ("CODESYS", codesys, plcopen::import),
-    ("text", sfc::export, sfc::import),
+    ("text", text, sfc::import),
 ];
 
 /// The project with all that the standard can say. For Beremiz and OpenPLC the actions stand in a step of their own;
 /// `tests/tests/interop.rs` runs those projects.
 fn whole(document: &Document) -> Written {
-    plcopen::export_for(document, plcopen::Dialect::Standard)
+    project(document, plcopen::Dialect::Standard)
 }
 
 /// The project for CODESYS: bodies beside steps, and the names of programs before those of their variables.
 fn codesys(document: &Document) -> Written {
-    plcopen::export_for(document, plcopen::Dialect::Codesys)
+    project(document, plcopen::Dialect::Codesys)
+}
+
+fn project(document: &Document, dialect: plcopen::Dialect) -> Written {
+    g7_exchange::named("plcopen").and_then(|f| f.write_in(document, dialect)).expect("a form with dialects")
+}
+
+fn text(document: &Document) -> Written {
+    g7_exchange::named("sfc").and_then(|f| f.write(document)).expect("a form that is written")
 }
 
 /// Cases that run otherwise in a form, which the export tells as a warning: what runs on
@@ -82,6 +90,23 @@ fn standard(mut document: Document) -> Document {
 /// The expansion of each macro-step.
 type Macros = BTreeMap<String, String>;
 
+/// The name of an element or member as a single variable: `m_1_speed` for `m[1].speed`.
+fn single(name: &str) -> String {
+    name.replace(['.', '[', ','], "_").replace(']', "").replace('-', "m")
+}
+
+/// Its name where the array stays one: `m_speed[1]`.
+fn element(name: &str) -> Option<String> {
+    let (mut base, mut indexes, mut rest) = (String::new(), Vec::new(), name);
+    while let Some((before, behind)) = rest.split_once('[') {
+        let (index, after) = behind.split_once(']')?;
+        base.push_str(before);
+        indexes.push(index);
+        rest = after;
+    }
+    (!indexes.is_empty()).then(|| format!("{}[{}]", (base + rest).replace('.', "_"), indexes.join(",")))
+}
+
 /// The new form of a name: the same, or one made of it.
 fn counterpart<'a>(name: &str, there: &'a BTreeSet<String>, macros: &Macros) -> Option<&'a String> {
     if let Some(same) = there.get(name) {
@@ -94,8 +119,10 @@ fn counterpart<'a>(name: &str, there: &'a BTreeSet<String>, macros: &Macros) -> 
     let step = if digit { format!("Step{last}") } else { last.to_string() };
     let letters = last.replace('+', "plus").replace('-', "minus");
     let expansion = macros.get(home).map_or(home, String::as_str);
+    let home = &single(home);
     let wanted = [
-        name.replace('.', "_"),
+        element(name).unwrap_or_else(|| single(name)),
+        single(name),
         format!("{home}_{step}"),
         format!("{expansion}_{step}"),
         format!("{home}_{last}"),
@@ -208,10 +235,14 @@ fn difference(one: &Bench, two: &Bench) -> Option<String> {
     let names: BTreeSet<String> = theirs.keys().cloned().collect();
     for (name, value) in one.variables() {
         let home = name.split_once('.').map(|(home, _)| home);
-        if home.is_some_and(|h| !one.charts.contains(h)) && !names.contains(&name) {
-            continue; // A member of a block that is called otherwise there.
-        }
-        let there = counterpart(&name, &names, &one.macros);
+        let there = if home.is_some_and(|h| !one.charts.contains(h)) {
+            let forms = [Some(name.clone()), element(&name), Some(single(&name))];
+            // A member of a block may be called otherwise there.
+            let Some(there) = forms.iter().flatten().find_map(|n| names.get(n)) else { continue };
+            Some(there)
+        } else {
+            counterpart(&name, &names, &one.macros)
+        };
         let got = there.and_then(|n| theirs.get(n));
         if got != Some(&value) {
             return Some(format!("{name} is {value:?}, there {got:?} in {:?}", one.active()));

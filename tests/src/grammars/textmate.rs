@@ -100,7 +100,8 @@ pub(super) fn grammar(words: &Vocabulary) -> String {
                 declared("function|action|section", "entity.name.function"),
             ]),
             "profiles": rules(vec![json!({
-                "begin": r"(?<![.\w])(profile|target)\b",
+                // A variable can have the same name.
+                "begin": r"(?<![.\w])(profile|target)\b(?=\s+\w)(?!\s+(?:AND|MOD|OR|XOR|and|mod|or|xor)\b)",
                 "beginCaptures": { "1": { "name": "keyword.other.g7" } },
                 "end": r"$|(?<=\})",
                 "patterns": [

@@ -16,8 +16,8 @@ use super::read::{ActionNode, Condition, Sheet, StepNode, StepSort, TransitionNo
 use crate::undeclared;
 use g7_iec::nodes::{self, Taken, assign, name};
 use g7_iec::report::Report;
+use g7_iec::st;
 use g7_iec::xml::attr::{self, Text};
-use g7_iec::{il, st};
 use g7_model::visit_mut;
 
 /// The distance between two columns and between two rows, in hundredths of the drawing's unit.
@@ -119,7 +119,7 @@ fn source(section: Node, report: &mut Report) -> Vec<Stmt> {
             "ILSource" => {
                 let text = text();
                 let place = |part: std::ops::Range<usize>| text.place(&part);
-                statements.extend(il::statements(&text.text, &place, report));
+                statements.extend(st::single::instructions(&text.text, &place, report));
             }
             tag @ ("LDSource" | "FBDSource" | "LL984Source") => {
                 let what = say!("a section in a drawn language (`{tag}`) is left out");
@@ -133,12 +133,12 @@ fn source(section: Node, report: &mut Report) -> Vec<Stmt> {
 
 fn structured(text: &Text, report: &mut Report) -> Vec<Stmt> {
     let place = |part: std::ops::Range<usize>| text.place(&part);
-    st::statements(&text.text, &place, report)
+    st::single::statements(&text.text, &place, report)
 }
 
 fn expression(text: &Text, report: &mut Report) -> Expr {
     let place = |part: std::ops::Range<usize>| text.place(&part);
-    st::expression(&text.text, &place, report)
+    st::single::expression(&text.text, &place, report)
 }
 
 fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Chart, Layout) {
@@ -301,7 +301,7 @@ fn section<'a>(node: Node<'a, 'a>, report: &mut Report) -> Option<ChartItem> {
         (Some(text), _) => (structured(&text, report), false),
         (None, Some(text)) => {
             let place = |part: std::ops::Range<usize>| text.place(&part);
-            let value = il::expression(&text.text, &place, report);
+            let value = st::single::result(&text.text, &place, report);
             (vec![assign(name(&[&title.text], at), value, at)], true)
         }
         (None, None) => {

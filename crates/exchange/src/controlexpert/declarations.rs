@@ -107,7 +107,7 @@ fn initial(node: Node, decl: &mut VarDecl, report: &mut Report) {
     let Some(init) = node.children().find(|n| n.has_tag_name("variableInit")) else { return };
     let Some(value) = attr::text(init, "value").filter(|v| !v.text.trim().is_empty()) else { return };
     let place = |part: std::ops::Range<usize>| value.place(&part);
-    decl.init = Some(st::expression(&value.text, &place, report));
+    decl.init = Some(st::single::expression(&value.text, &place, report));
 }
 
 /// Inputs of an instance that have an initial value.

@@ -73,12 +73,12 @@ impl Lines {
     pub(super) fn statements(&self, report: &mut Report) -> Vec<Stmt> {
         let place = |part: Range<usize>| self.place(&part);
         let text = dialect::retentive(&self.text, &place, report);
-        st::statements(&text, &place, report)
+        st::single::statements(&text, &place, report)
     }
 
     fn expression(&self, report: &mut Report) -> Expr {
         let place = |part: Range<usize>| self.place(&part);
-        st::expression(&self.text, &place, report)
+        st::single::expression(&self.text, &place, report)
     }
 }
 

@@ -139,7 +139,7 @@ fn value(tag: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
     if ty == Type::Bool {
         return Some(nodes::boolean(true, report.span(&value.at)));
     }
-    Some(st::expression(&value.text, &place, report))
+    Some(st::single::expression(&value.text, &place, report))
 }
 
 /// The presets of steps and actions, which the file stores as values of their tags.

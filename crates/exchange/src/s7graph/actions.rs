@@ -197,7 +197,7 @@ fn action(node: Xml, guards: &Guards, report: &mut Report) -> Option<Action> {
 fn deed(words: &Words, kind: Qualifier, range: &Range<usize>, report: &mut Report) -> Option<Deed> {
     let place = |part: Range<usize>| words.place(&part);
     if words.text.contains(":=") || words.text.contains('(') && kind == Qualifier::N {
-        let mut list = st::statements(&words.text, &place, report);
+        let mut list = st::single::statements(&words.text, &place, report);
         visit_mut::stmts(&mut list, &mut Names(&words.names));
         let whole = list.iter().all(|s| matches!(s.kind, StmtKind::Assign { .. } | StmtKind::Call(..)));
         if list.is_empty() || !whole {
@@ -209,11 +209,11 @@ fn deed(words: &Words, kind: Qualifier, range: &Range<usize>, report: &mut Repor
         Some((target, time)) => (target, Some((target.len() + 1, time))),
         None => (words.text.as_str(), None),
     };
-    let mut target = st::expression(target, &place, report);
+    let mut target = st::single::expression(target, &place, report);
     visit_mut::expr(&mut target, &mut Names(&words.names));
     let time = time.map(|(skip, text)| {
         let place = |part: Range<usize>| words.place(&(part.start + skip..part.end + skip));
-        let mut time = st::expression(text, &place, report);
+        let mut time = st::single::expression(text, &place, report);
         visit_mut::expr(&mut time, &mut Names(&words.names));
         time
     });

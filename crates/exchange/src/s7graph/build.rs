@@ -215,7 +215,7 @@ fn declare(
     let start = kid(member, "StartValue").map(attr::content).filter(|t| !t.text.trim().is_empty());
     if let Some(text) = start {
         let place = |part: std::ops::Range<usize>| text.place(&part);
-        let value = st::expression(&text.text, &place, report);
+        let value = st::single::expression(&text.text, &place, report);
         decl.init = Some(value).filter(|v| nodes::truth(v) != Some(false));
     } else if kind == VarKind::Const {
         decl.init = Some(if known == Type::Bool {

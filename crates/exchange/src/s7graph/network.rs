@@ -370,7 +370,7 @@ pub(super) fn access(node: Xml, report: &mut Report) -> Expr {
     if let Some(value) = value {
         let text = attr::content(value);
         let place = |part: Range<usize>| text.place(&part);
-        return st::expression(&text.text, &place, report);
+        return st::single::expression(&text.text, &place, report);
     }
     if let Some(address) = kid(node, "Address")
         && let Some(name) = direct(address)

@@ -232,7 +232,7 @@ impl Parser<'_> {
         let at = self.here();
         let value = self.value()?;
         match value.kind {
-            ExprKind::Path(_) | ExprKind::Direct(_) => Some(value),
+            ExprKind::Path(_) | ExprKind::Element(..) | ExprKind::Direct(_) => Some(value),
             ExprKind::Bad => None,
             _ => {
                 self.report.say(&codes::BAD_TEXT, &at, say!("only a variable can be written"));
@@ -245,8 +245,7 @@ impl Parser<'_> {
     fn call_instruction(&mut self, when: When) -> Option<Kind> {
         let instance = self.variable();
         let args: Vec<Arg> = if self.at("(") { self.args().list } else { Vec::new() };
-        let ExprKind::Path(path) = instance.kind else { return None };
-        Some(Kind::Call(path, args, when))
+        Some(Kind::Call(self.called(instance)?, args, when))
     }
 
     /// A function, or an input of a function block.

@@ -234,6 +234,13 @@ fn reference_target(maker: &mut Maker, draft: &mut Draft, name: &Text) -> Option
     if let Some((path, _)) = maker.coder.variable(word, at, &draft.place) {
         return Some(Target::Path(path));
     }
+    if word.ends_with(']') {
+        let raw = st::expression(&name.text, &|r| name.place(&r), maker.coder.report);
+        let element = maker.coder.expr(raw, &draft.place);
+        if matches!(element.kind, ExprKind::Element(..)) {
+            return Some(Target::Element(Box::new(element)));
+        }
+    }
     let what = say!("`{}` is no variable and no action of this unit", line(word));
     maker.coder.report.say(&codes::UNKNOWN_OBJECT, &name.at, what);
     None

@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{Expr, Name, Type, VarDecl, VarKind, say};
+use g7_model::{Array, Expr, Name, Type, VarDecl, VarKind, say};
 
 use super::read::{Pou, Section, SectionKind};
 use super::tree::{Xml, documentation, head, kid, text};
@@ -34,7 +34,7 @@ pub(super) fn globals(plan: &Plan, report: &mut Report) -> Vec<VarDecl> {
             if let Some(Meaning::Unit(_)) = plan.globals.get(&name.text.to_uppercase()) {
                 continue;
             }
-            found.extend(declaration(*variable, name, section, false, report));
+            found.extend(declaration(plan, *variable, name, section, false, report));
         }
     }
     found
@@ -62,7 +62,7 @@ pub(super) fn of_unit(plan: &Plan, unit: &Unit, pou: &Pou, report: &mut Report) 
             if matches!(unit.names.get(&upper), Some(Meaning::Unit(_))) {
                 continue;
             }
-            let decl = declaration(*variable, name, section, unit.program, report);
+            let decl = declaration(plan, *variable, name, section, unit.program, report);
             let place =
                 if unit.of_file.contains(&upper) { &mut declared.of_file } else { &mut declared.of_chart };
             place.extend(decl);
@@ -86,8 +86,9 @@ fn named(variable: Xml, report: &mut Report) -> Option<Name> {
 }
 
 /// Declares one variable; None if its type has no counterpart.
-fn declaration(
-    variable: Xml,
+fn declaration<'a>(
+    plan: &Plan<'a>,
+    variable: Xml<'a>,
     name: Name,
     section: &Section,
     program: bool,
@@ -95,7 +96,9 @@ fn declaration(
 ) -> Option<VarDecl> {
     types::judge(variable, report);
     let at = report.span(&head(variable));
-    let ty = match types::known(variable) {
+    let (bounds, of_elements) = types::array(variable, &plan.project.types, report).unzip();
+    let array = bounds.map(|dimensions| Box::new(Array { dimensions, at: at.into() }));
+    let ty = match of_elements.map_or_else(|| types::meant(variable, &plan.project.types), Known::Type) {
         Known::Type(ty) => ty,
         Known::Derived(ty) => {
             let what = say!("`{}` is of type `{}`, which has no counterpart", name.text, line(&ty));
@@ -111,7 +114,7 @@ fn declaration(
     let address = address(variable, report);
     let kind = kind(section, ty, channel(variable), program);
     let mut init = types::initial(variable, ty, report);
-    if kind == VarKind::Const && init.is_none() {
+    if kind == VarKind::Const && init.is_none() && array.is_none() {
         init = Some(Expr::zero(ty, at.into()));
     }
     if kind == VarKind::Input && section.kind == SectionKind::InOut {
@@ -119,6 +122,7 @@ fn declaration(
         report.say(&codes::DIFFERENT, &head(variable), what);
     }
     Some(VarDecl {
+        array,
         init,
         address: address.filter(|_| kind != VarKind::Const),
         retain: section.retain && kind == VarKind::Var,

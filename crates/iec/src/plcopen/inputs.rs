@@ -74,6 +74,7 @@ fn of_chart(chart: &Chart, written: &mut Written) {
                         ActionKind::Qualified { target: Target::Path(path), .. } => {
                             name(&path.names, near, written);
                         }
+                        ActionKind::Qualified { target: Target::Element(e), .. } => target(e, near, written),
                         ActionKind::Qualified { target: Target::Work(work), .. }
                         | ActionKind::OnEvent { work, .. }
                         | ActionKind::EachScan { work, .. } => targets(work.statements(), near, written),
@@ -95,8 +96,10 @@ fn name(names: &[Name], near: Option<&str>, written: &mut Written) {
 }
 
 fn target(expr: &Expr, near: Option<&str>, written: &mut Written) {
-    if let ExprKind::Path(path) = &expr.kind {
-        name(&path.names, near, written);
+    match &expr.kind {
+        ExprKind::Path(path) => name(&path.names, near, written),
+        ExprKind::Element(path, ..) => name(&path.names, near, written),
+        _ => {}
     }
 }
 

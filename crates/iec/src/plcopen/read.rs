@@ -1,5 +1,7 @@
 //! Reads the units of a project from XML elements: its POUs, global variables and tasks.
 
+use std::collections::HashMap;
+
 use g7_model::{Nanos, codes, say};
 use roxmltree::Document;
 
@@ -18,6 +20,8 @@ pub(super) struct Project<'a> {
     pub(super) runs: Vec<Run<'a>>,
     /// The shortest interval of all tasks.
     pub(super) cycle: Option<Nanos>,
+    /// The types of arrays, and others that are plain ones with a name: what they stand for, by their names in upper case.
+    pub(super) types: HashMap<String, Xml<'a>>,
     /// The start tag of the project.
     pub(super) at: std::ops::Range<usize>,
 }
@@ -113,6 +117,9 @@ impl<'a> Reader<'_, 'a> {
                 "globalVars" => {
                     let section = section(child, SectionKind::Global);
                     self.project.globals.push(section);
+                }
+                "dataType" | "dataTypeDecl" if let Some((name, base)) = plain_type(child) => {
+                    self.project.types.insert(name.to_uppercase(), base);
                 }
                 "dataType" | "dataTypeDecl" => {
                     let what = say!("a type of one's own; variables of it are left out");
@@ -274,4 +281,11 @@ pub(super) fn duration(word: &str) -> Option<Nanos> {
         .then(|| format!("{total:.0}").parse().ok())
         .flatten()
         .map(Nanos::new)
+}
+
+/// The name and the meaning of a type that is an array or has a plain one behind it.
+fn plain_type(node: Xml<'_>) -> Option<(&str, Xml<'_>)> {
+    let base = kid(node, "baseType")?;
+    let plain = |n: Xml| !matches!(tag(n).as_str(), "struct" | "enum" | "pointer");
+    (kids(base).all(plain) && kid(node, "initialValue").is_none()).then_some((word(node, "name")?, base))
 }

@@ -1,5 +1,7 @@
 //! Types and initial values of variables.
 
+use std::collections::HashMap;
+
 use g7_model::codes;
 use g7_model::{Expr, ExprKind, FbKind, Literal, Span, Type, UnaryOp, say};
 
@@ -9,8 +11,15 @@ use crate::report::Report;
 use crate::st;
 use crate::xml::attr;
 
+/// The most names that stand for each other.
+const MOST_NAMES: usize = 64;
+/// The most dimensions of an array.
+const MOST_DIMENSIONS: usize = 16;
 /// The longest string that a variable may hold.
 const MOST_TEXT: u16 = 1024;
+
+/// The most values of an array that are written apart.
+const MOST_VALUES: usize = 1 << 16;
 
 /// The meaning of a declared type.
 pub(super) enum Known {
@@ -25,6 +34,47 @@ pub(super) enum Known {
 /// The type of a variable.
 pub(super) fn known(variable: Xml) -> Known {
     type_of(variable).map_or(Known::None, of)
+}
+
+/// The types of the file, see [`super::read::Project::types`].
+pub(super) type Types<'a> = HashMap<String, Xml<'a>>;
+
+/// The type behind the name of a plain type of the file; anything else as it is.
+fn resolved<'a>(mut node: Xml<'a>, types: &Types<'a>) -> Xml<'a> {
+    for _ in 0..MOST_NAMES {
+        let name = kid(node, "derived").and_then(|d| word(d, "name"));
+        let Some(meant) = name.and_then(|n| types.get(&n.to_uppercase())) else { break };
+        node = *meant;
+    }
+    node
+}
+
+/// The type of a variable that is no array, where the file gives it a name.
+pub(super) fn meant<'a>(variable: Xml<'a>, types: &Types<'a>) -> Known {
+    type_of(variable).map_or(Known::None, |node| of(resolved(node, types)))
+}
+
+/// The bounds of a variable that is an array of a type that G7 has, and the type of its elements.
+pub(super) fn array<'a>(
+    variable: Xml<'a>,
+    types: &Types<'a>,
+    report: &mut Report,
+) -> Option<(Vec<(Expr, Expr)>, Type)> {
+    let (mut bounds, mut node) = (Vec::new(), resolved(type_of(variable)?, types));
+    while let Some(array) = kid(node, "array").filter(|_| bounds.len() < MOST_DIMENSIONS) {
+        for dimension in kids(array).filter(|n| tag(*n) == "dimension") {
+            let mut bound = |name| {
+                let text = attr::text(dimension, name)?;
+                Some(st::expression(&text.text, &|r| text.place(&r), report))
+            };
+            bounds.push((bound("lower")?, bound("upper")?));
+        }
+        node = resolved(kid(array, "baseType")?, types);
+    }
+    match of(node) {
+        Known::Type(ty) if !bounds.is_empty() && is_block(Some(ty)).is_none() => Some((bounds, ty)),
+        _ => None,
+    }
 }
 
 /// The type within a `type`, `returnType` or `baseType`.
@@ -73,14 +123,45 @@ pub(super) fn judge(variable: Xml, report: &mut Report) {
     }
 }
 
-/// An initial value.
+/// An initial value; that of an array is a list.
 pub(super) fn initial(variable: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
     let value = kid(variable, "initialValue")?;
+    if let Some(list) = kid(value, "arrayValue") {
+        let mut values = Vec::new();
+        elements(list, ty, 1, report, &mut values);
+        let at = report.span(&head(list)).into();
+        return Some(Expr { kind: ExprKind::List(values), at });
+    }
     let Some(simple) = kid(value, "simpleValue") else {
-        let what = say!("initial values of arrays and structures are not carried over");
+        let what = say!("initial values of structures are not carried over");
         report.say(&codes::NOT_CARRIED, &head(value), what);
         return None;
     };
+    one(simple, ty, report)
+}
+
+/// The values of the elements of an array; those of rows stand one behind the other.
+fn elements(list: Xml, ty: Type, depth: usize, report: &mut Report, values: &mut Vec<(u32, Expr)>) {
+    for value in kids(list).filter(|n| tag(*n) == "value") {
+        let times = word(value, "repetitionValue").and_then(|n| n.parse::<u32>().ok()).unwrap_or(1);
+        if let Some(row) = kid(value, "arrayValue").filter(|_| depth < MOST_DIMENSIONS) {
+            for _ in 0..times {
+                if values.len() > MOST_VALUES {
+                    return;
+                }
+                elements(row, ty, depth + 1, report, values);
+            }
+        } else if let Some(one) = kid(value, "simpleValue").and_then(|simple| one(simple, ty, report)) {
+            values.push((times, one));
+        } else {
+            let what = say!("initial values of structures are not carried over");
+            report.element(&codes::NOT_CARRIED, "value", &head(value), what);
+        }
+    }
+}
+
+/// One value.
+fn one(simple: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
     let text = attr::text(simple, "value").filter(|t| !t.text.trim().is_empty())?;
     let at = report.span(&text.at);
     let word = text.text.trim();

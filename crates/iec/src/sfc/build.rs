@@ -4,9 +4,9 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::codes;
 use g7_model::{
-    Action, ActionKind, BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind,
-    Function, Item, Literal, Local, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName, Step,
-    StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
+    Action, ActionKind, BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Composed, Document, Expr,
+    ExprKind, Function, Item, Literal, Local, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName,
+    Step, StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
 };
 
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
@@ -23,6 +23,7 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
         items.push(Item::Cycle(scan, at.into()));
     }
     items.extend(source.types.values.iter().map(|(name, number)| Item::Var(enumeration(name, *number))));
+    items.extend(source.types.structures.iter().chain(&source.blocks).cloned().map(Item::Composed));
     let mut builder = Builder { source: &source, paces, globals: HashSet::new(), report };
     items.extend(builder.globals());
     let alone = source.units.iter().filter(|u| u.kind != UnitKind::Function && builder.runs(u)).count() == 1;
@@ -110,7 +111,7 @@ impl Builder<'_> {
             }
         }
         let externals = source.units.iter().flat_map(|u| &u.vars).filter(|v| v.section == Section::External);
-        for variable in externals {
+        for variable in externals.chain(&source.externals) {
             if !self.known_type(variable) || !self.globals.insert(upper(variable)) {
                 continue;
             }
@@ -126,15 +127,11 @@ impl Builder<'_> {
     /// True if the type of a variable is known; otherwise reports it.
     fn known_type(&mut self, variable: &Variable) -> bool {
         let Some(ty) = &variable.unknown else { return true };
-        let own = self.source.units.iter().find(|u| u.name.text.eq_ignore_ascii_case(&ty.text));
-        let what = match own {
-            Some(unit) if unit.is_chart() => say!(
-                "an instance of `{}`; that chart is carried over once, on its own, and not as a part of this unit",
-                ty.text
-            ),
-            Some(_) => say!("an instance of `{}`, which is no function block", ty.text),
-            None => say!("there is no type `{}`", ty.text),
-        };
+        let named = |c: &Composed| c.name.text.eq_ignore_ascii_case(&ty.text);
+        if self.source.blocks.iter().chain(&self.source.types.structures).any(named) {
+            return true;
+        }
+        let what = super::blocks::no_type(self.source, ty);
         self.report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         false
     }
@@ -369,6 +366,11 @@ impl Builder<'_> {
                 continue;
             }
             let decl = &variable.decl;
+            if decl.array.is_some() || decl.of.is_some() {
+                let what = say!("an array, a structure or a function block in a function");
+                self.report.put(Problem::new(&codes::NOT_CARRIED, decl.at.0, what));
+                continue;
+            }
             match variable.section {
                 Section::Input => {
                     params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));

@@ -13,6 +13,7 @@ use std::collections::{HashMap, HashSet};
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{Arg, Name, Path, Problem, Said, Span, Stmt, StmtKind, Type, VarKind, codes, say};
 
+use super::singles;
 use super::unit::{Instance, Part, Source, Unit, UnitKind};
 use crate::nodes::{self, Taken};
 use crate::report::Report;
@@ -28,6 +29,7 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
         return;
     }
     own_globals(source);
+    singles::expand(source, report);
     let mut taken = Taken::default();
     let of_globals = source.globals.iter().chain(source.units.iter().flat_map(|u| &u.vars));
     let is_instance = |v: &&Variable| v.unknown.is_some();

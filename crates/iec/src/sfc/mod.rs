@@ -19,6 +19,7 @@ mod blocks;
 mod build;
 mod instances;
 mod read;
+mod singles;
 mod unit;
 mod write;
 

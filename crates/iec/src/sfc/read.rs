@@ -14,7 +14,7 @@ pub(super) fn source(p: &mut Parser) -> Source {
         let before = p.mark();
         if p.at_word("TYPE") {
             p.type_block(&mut source.types);
-        } else if !p.declarations(&source.types, &mut source.globals) {
+        } else if !p.declarations(&mut source.types, &mut source.globals) {
             item(p, &mut source);
         }
         if p.mark() == before {
@@ -102,7 +102,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
     loop {
         let before = p.mark();
         while p.eat(";") {}
-        if p.declarations(&source.types, &mut unit.vars) || part(p, &mut unit) {
+        if p.declarations(&mut source.types, &mut unit.vars) || part(p, &mut unit) {
             continue;
         }
         if p.at_end() || closes(&p.word()) {
@@ -406,7 +406,7 @@ fn configuration(p: &mut Parser, source: &mut Source) {
 
 /// Reads an element of a configuration.
 fn inside(p: &mut Parser, source: &mut Source) -> bool {
-    if p.declarations(&source.types, &mut source.globals) {
+    if p.declarations(&mut source.types, &mut source.globals) {
         return true;
     }
     match p.word().as_str() {

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use g7_model::{Expr, Name, Nanos, Qualifier, Span, Stmt};
+use g7_model::{Composed, Expr, Name, Nanos, Qualifier, Span, Stmt};
 
 use crate::st::{Types, Variable};
 
@@ -14,6 +14,10 @@ pub(super) struct Source {
     pub(super) tasks: Vec<Task>,
     pub(super) instances: Vec<Instance>,
     pub(super) types: Types,
+    /// The function blocks without a chart that are used.
+    pub(super) blocks: Vec<Composed>,
+    /// The global variables that these use.
+    pub(super) externals: Vec<Variable>,
 }
 
 /// The kinds of program organisation unit.

@@ -14,25 +14,26 @@ pub(super) fn literal(text: &str, ty: Type) -> Option<String> {
     text.parse::<u64>().ok().map(|bits| constant(ty, bits))
 }
 
-/// A bit of a variable.
-pub(super) struct Bit<'a> {
-    name: &'a str,
+/// A bit of a variable, or of an element of an array.
+pub(super) struct Bit {
+    name: String,
     ty: Type,
     string: Type,
     mask: u64,
 }
 
-impl<'a> Bit<'a> {
+impl Bit {
     /// The bit of this number, if the type has bits.
-    pub(super) fn of(name: &'a str, ty: Type, number: &str) -> Option<Bit<'a>> {
+    pub(super) fn of(name: &str, ty: Type, number: &str) -> Option<Bit> {
         let string = ty.bit_string().or(ty.is_bits().then_some(ty))?;
-        Some(Bit { name, ty, string, mask: 1u64.checked_shl(number.parse().ok()?)? })
+        let mask = 1u64.checked_shl(number.parse().ok()?)?;
+        Some(Bit { name: name.to_owned(), ty, string, mask })
     }
 
     /// The variable as a bit string.
     fn bits(&self) -> String {
         let Bit { name, ty, string, .. } = self;
-        if ty == string { (*name).to_owned() } else { format!("{ty}_TO_{string}({name})") }
+        if ty == string { name.clone() } else { format!("{ty}_TO_{string}({name})") }
     }
 
     /// `w.3`, as a comparison.

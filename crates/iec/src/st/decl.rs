@@ -1,11 +1,12 @@
 //! Declarations of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Name, Path, Place, Problem, Type, VarDecl, VarKind, say};
+use g7_model::{Expr, Name, Type, VarDecl, VarKind, say};
 
+use super::initial::{declared, element};
 use super::lex::Kind;
 use super::parse::Parser;
-use super::types::{Shape, Types};
+use super::shape::{Shape, Types};
 
 /// The kind of section in which a variable is declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,7 +27,7 @@ pub(crate) struct Variable {
     /// The declaration, with one name. Inputs and outputs of the plant are those of the program, or
     /// variables with an address.
     pub(crate) decl: VarDecl,
-    /// The name of the type if it is unknown: a function block of the file.
+    /// The name of the type if it is not declared before: that of a function block of the file.
     pub(crate) unknown: Option<Name>,
 }
 
@@ -42,7 +43,7 @@ struct Head {
 
 impl Parser<'_> {
     /// Reads one section of declarations; returns false if none stands here.
-    pub(crate) fn declarations(&mut self, types: &Types, found: &mut Vec<Variable>) -> bool {
+    pub(crate) fn declarations(&mut self, types: &mut Types, found: &mut Vec<Variable>) -> bool {
         let at = self.here();
         let section = match self.word().as_str() {
             "VAR" => Section::Local,
@@ -105,7 +106,7 @@ impl Parser<'_> {
     }
 
     /// Reads `a, b AT %I0.0 : BOOL R_EDGE := TRUE;`; returns false if it could not be read.
-    fn declaration(&mut self, head: Head, types: &Types, found: &mut Vec<Variable>) -> bool {
+    fn declaration(&mut self, head: Head, types: &mut Types, found: &mut Vec<Variable>) -> bool {
         let start = self.token().start;
         let mut names = Vec::new();
         loop {
@@ -133,7 +134,8 @@ impl Parser<'_> {
         if !self.expect(":") {
             return false;
         }
-        let shape = self.shape(types);
+        let Some((first, _)) = names.first().cloned() else { return false };
+        let shape = self.shape(&first, types);
         self.edge_inputs(&names);
         let init = if self.eat(":=") { Some(self.initial()) } else { None };
         self.arguments();
@@ -144,11 +146,18 @@ impl Parser<'_> {
         let at = self.since(start).into();
         let comment = self.comment_behind();
         for (name, address) in names {
-            let mut maker = Maker { head, address, comment: comment.clone(), at, found };
-            let problem = maker.make(&name, &shape, init.as_ref());
-            if let Some(problem) = problem {
-                self.report.put(problem);
+            let (mut decl, problem) = declared(&name, &shape, init.as_ref(), at);
+            problem.into_iter().for_each(|p| self.report.put(p));
+            let unknown = if let Shape::Unknown(of) = element(&shape) { Some(of.clone()) } else { None };
+            decl.kind = kind(head, &decl, address.as_ref());
+            if decl.kind == VarKind::Const && decl.init.is_none() && decl.array.is_none() && decl.of.is_none()
+            {
+                decl.init = Some(Expr::zero(decl.ty, at));
             }
+            decl.address = address.filter(|_| decl.kind != VarKind::Const);
+            decl.retain = head.retain && decl.kind == VarKind::Var;
+            decl.comment.clone_from(&comment);
+            found.push(Variable { section: head.section, decl, unknown });
         }
         ended
     }
@@ -186,67 +195,8 @@ impl Parser<'_> {
         }
     }
 
-    fn initial(&mut self) -> Initial {
-        let start = self.token().start;
-        if self.at("[") {
-            return self.array_value(start, "[", "]");
-        }
-        let named = self.at("(") && self.ahead(1).kind == Kind::Word && self.ahead_is(2, ":=");
-        if named {
-            return self.struct_value();
-        }
-        Initial::One(self.expr())
-    }
-
-    /// `[1, 2, 3(0)]`.
-    fn array_value(&mut self, start: u32, open: &str, close: &str) -> Initial {
-        let mut list = Vec::new();
-        if !self.enter() {
-            return Initial::One(self.bad(start));
-        }
-        self.expect(open);
-        while !self.at_end() && !self.at(close) {
-            let token = self.token();
-            let times = self.slice(token).parse::<usize>().ok();
-            if let Some(times) = times.filter(|_| token.kind == Kind::Number && self.ahead_is(1, "(")) {
-                self.bump();
-                self.bump();
-                let value = self.initial();
-                self.expect(")");
-                list.extend(std::iter::repeat_n(value, times.min(2000)));
-            } else {
-                list.push(self.initial());
-            }
-            if !self.eat(",") || list.len() > 10_000 {
-                break;
-            }
-        }
-        self.expect(close);
-        self.leave();
-        Initial::List(list)
-    }
-
-    /// `(a := 1, b := 2)`.
-    fn struct_value(&mut self) -> Initial {
-        let mut fields = Vec::new();
-        if !self.enter() {
-            return Initial::Fields(fields);
-        }
-        self.bump();
-        while let Some(name) = self.name(say!("the name of an element")) {
-            self.expect(":=");
-            fields.push((name, self.initial()));
-            if !self.eat(",") {
-                break;
-            }
-        }
-        self.expect(")");
-        self.leave();
-        Initial::Fields(fields)
-    }
-
     /// The comment behind the declaration on the same line.
-    fn comment_behind(&self) -> Option<Box<str>> {
+    pub(super) fn comment_behind(&self) -> Option<Box<str>> {
         let end = self.behind();
         let index = self.comments.partition_point(|c| c.start < end);
         let comment = self.comments.get(index)?;
@@ -261,153 +211,23 @@ impl Parser<'_> {
     }
 }
 
-/// An initial value as written.
-#[derive(Clone, Debug)]
-enum Initial {
-    One(Expr),
-    List(Vec<Initial>),
-    Fields(Vec<(Name, Initial)>),
-}
-
-/// Makes the variables that belong to one declared name.
-struct Maker<'f> {
-    head: Head,
-    address: Option<Name>,
-    comment: Option<Box<str>>,
-    at: Place,
-    found: &'f mut Vec<Variable>,
-}
-
-impl Maker<'_> {
-    fn make(&mut self, name: &Name, shape: &Shape, init: Option<&Initial>) -> Option<Problem> {
-        match shape {
-            Shape::Simple(ty, default) => self.one(name, *ty, default.as_ref(), init, None),
-            Shape::Enum(values, default) => {
-                let at = name.at;
-                let first = values.first().map(|v| path(&v.text, at));
-                let default = default.clone().or(first);
-                self.one(name, Type::Int, default.as_ref(), init, None)
-            }
-            Shape::Unknown(ty) => self.one(name, Type::Bool, None, init, Some(ty.clone())),
-            Shape::Struct(fields) => self.structure(name, fields, init),
-            Shape::Array(bounds, element) => self.array(name, bounds, element, init),
-        }
+/// The kind of a variable, from its section or its address.
+fn kind(head: Head, decl: &VarDecl, address: Option<&Name>) -> VarKind {
+    if head.constant {
+        return VarKind::Const;
     }
-
-    fn one(
-        &mut self,
-        name: &Name,
-        ty: Type,
-        default: Option<&Expr>,
-        init: Option<&Initial>,
-        unknown: Option<Name>,
-    ) -> Option<Problem> {
-        let mut problem = None;
-        let mut value = default.cloned();
-        match init {
-            Some(Initial::One(e)) if e.kind != ExprKind::Bad => value = Some(e.clone()),
-            Some(Initial::One(_)) | None => {}
-            Some(_) => {
-                let what = say!(
-                    "the initial values of `{}` do not fit its type, or cannot be carried over",
-                    name.text
-                );
-                problem = Some(Problem::new(&codes::NOT_CARRIED, self.at.0, what));
-            }
-        }
-        let kind = self.kind(ty);
-        if kind == VarKind::Const && value.is_none() && unknown.is_none() {
-            value = Some(Expr::zero(ty, self.at));
-        }
-        let decl = VarDecl {
-            init: value,
-            address: self.address.clone().filter(|_| kind != VarKind::Const),
-            retain: self.head.retain && kind == VarKind::Var,
-            comment: self.comment.clone(),
-            ..VarDecl::new(kind, vec![name.clone()], ty, self.at)
-        };
-        self.found.push(Variable { section: self.head.section, decl, unknown });
-        problem
+    if matches!(decl.ty, Type::Fb(_)) {
+        return VarKind::Var;
     }
-
-    /// The kind of a variable, from its section or its address.
-    fn kind(&self, ty: Type) -> VarKind {
-        if self.head.constant {
-            return VarKind::Const;
-        }
-        if matches!(ty, Type::Fb(_)) {
-            return VarKind::Var;
-        }
-        if let Some(kind) = self.head.channel {
-            return kind;
-        }
-        let address = self.address.as_ref().map_or("", |a| &*a.text);
-        match self.head.section {
-            Section::Input => VarKind::Input,
-            Section::Output => VarKind::Output,
-            _ if address.starts_with("%I") => VarKind::Input,
-            _ if address.starts_with("%Q") => VarKind::Output,
-            _ => VarKind::Var,
-        }
+    if let Some(kind) = head.channel {
+        return kind;
     }
-
-    fn structure(
-        &mut self,
-        name: &Name,
-        fields: &[(Name, Shape)],
-        init: Option<&Initial>,
-    ) -> Option<Problem> {
-        let mut problem = None;
-        for (field, shape) in fields {
-            let value = match init {
-                Some(Initial::Fields(values)) => {
-                    values.iter().find(|(n, _)| n.text.eq_ignore_ascii_case(&field.text)).map(|(_, v)| v)
-                }
-                _ => None,
-            };
-            let name = Name { text: format!("{}.{}", name.text, field.text).into(), at: name.at };
-            problem = self.make(&name, shape, value).or(problem);
-        }
-        problem
+    let address = address.map_or("", |a| &*a.text);
+    match head.section {
+        Section::Input => VarKind::Input,
+        Section::Output => VarKind::Output,
+        _ if address.starts_with("%I") => VarKind::Input,
+        _ if address.starts_with("%Q") => VarKind::Output,
+        _ => VarKind::Var,
     }
-
-    fn array(
-        &mut self,
-        name: &Name,
-        bounds: &[(i64, i64)],
-        element: &Shape,
-        init: Option<&Initial>,
-    ) -> Option<Problem> {
-        let mut problem = None;
-        let mut index: Vec<i64> = bounds.iter().map(|b| b.0).collect();
-        let mut number = 0;
-        loop {
-            let text = index.iter().map(i64::to_string).collect::<Vec<_>>().join(",");
-            let value = match init {
-                Some(Initial::List(values)) => values.get(number),
-                other => other,
-            };
-            let name = Name { text: format!("{}[{text}]", name.text).into(), at: name.at };
-            problem = self.make(&name, element, value).or(problem);
-            number += 1;
-            // The last index runs fastest.
-            let mut place = index.len();
-            loop {
-                let Some(before) = place.checked_sub(1) else { return problem };
-                place = before;
-                let (Some(i), Some((from, to))) = (index.get_mut(place), bounds.get(place)) else {
-                    return problem;
-                };
-                if *i < *to {
-                    *i += 1;
-                    break;
-                }
-                *i = *from;
-            }
-        }
-    }
-}
-
-fn path(name: &str, at: Place) -> Expr {
-    Expr { kind: ExprKind::Path(Path { names: vec![Name { text: name.into(), at }] }), at }
 }

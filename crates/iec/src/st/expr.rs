@@ -141,23 +141,26 @@ impl Parser<'_> {
             }
             _ => {}
         }
-        let expr = self.variable();
-        Tree { expr, height: 1 }
+        self.variable_tree()
     }
 
-    /// A variable: `a`, `Step.X`, `a[1]`, `s.x`.
+    /// A variable: `a`, `Step.X`, `a[1]`, `s.x`, `a[i].x.3`.
     pub(crate) fn variable(&mut self) -> Expr {
+        self.variable_tree().expr
+    }
+
+    fn variable_tree(&mut self) -> Tree {
         let start = self.token().start;
         let mut names: Vec<Name> = Vec::new();
+        let (mut index, mut height, mut bit) = (Vec::new(), 0, None);
         let mut fits = true;
         while let Some(mut name) = self.name(say!("a name")) {
+            let before = index.len();
             while self.at("[") {
-                match self.index() {
-                    Some(index) => {
-                        name.text = format!("{}[{index}]", name.text).into();
-                        name.at = self.since(start).into();
-                    }
-                    None => fits = false,
+                let from = index.len();
+                height = height.max(self.indexes(&mut index));
+                if self.single {
+                    fits &= self.joined(&mut name, index.split_off(from), start);
                 }
             }
             names.push(name);
@@ -173,59 +176,64 @@ impl Parser<'_> {
             self.bump();
             if self.token().kind == Kind::Number {
                 // A bit of a number: `w.3`.
-                let token = self.token();
-                names.push(Name::new(self.slice(token), self.span_of(token)));
-                self.bump();
+                let token = self.bump();
+                let number = Name::new(self.slice(token), self.span_of(token));
+                if index.is_empty() {
+                    names.push(number)
+                } else {
+                    bit = Some(Box::new(number))
+                }
                 break;
             }
+            if let Some(last) = names.last_mut().filter(|_| index.len() > before) {
+                last.text = format!("{}[{}]", last.text, ",".repeat(index.len() - before - 1)).into();
+            }
         }
+        let at = self.since(start);
         if !fits || names.is_empty() {
-            return self.bad(start);
+            return Tree { expr: self.bad(start), height: 1 };
         }
-        Expr { kind: ExprKind::Path(Path { names }), at: self.since(start).into() }
+        let path = Path { names };
+        let kind = match index.as_slice() {
+            [] => ExprKind::Path(path),
+            _ => ExprKind::Element(Box::new(path), index, bit),
+        };
+        self.bounded(kind, at, height + 1)
     }
 
-    /// `[1, 2]` as text. An index that is not constant has no counterpart.
-    fn index(&mut self) -> Option<String> {
-        let open = self.token().start;
+    /// `[1, i + 1]`. Returns the height of the highest index.
+    fn indexes(&mut self, index: &mut Vec<Expr>) -> u32 {
         if !self.enter() {
-            return None;
+            return 0;
         }
         self.bump();
-        let mut parts = Vec::new();
-        let mut constant = true;
+        let mut height = 0;
         loop {
-            let negative = self.eat("-");
-            let token = self.token();
-            let alone = self.ahead_is(1, ",") || self.ahead_is(1, "]");
-            let number =
-                self.slice(token).parse::<i64>().ok().filter(|_| token.kind == Kind::Number && alone);
-            match number {
-                Some(n) => {
-                    self.bump();
-                    parts.push(if negative { -n } else { n }.to_string());
-                }
-                None => {
-                    constant = false;
-                    self.tree(1);
-                }
-            }
+            let tree = self.tree(1);
+            height = height.max(tree.height);
+            index.push(tree.expr);
             if !self.eat(",") {
                 break;
             }
         }
         self.expect("]");
         self.leave();
-        if !constant {
-            let at = self.range(open as usize, self.behind());
-            self.say(
-                &codes::NOT_CARRIED,
-                &at,
-                say!("an index that is no constant; arrays are carried as single variables"),
-            );
-            return None;
+        height
+    }
+
+    /// Makes indexes a part of a name. An index that is not constant has no counterpart; then it returns false.
+    fn joined(&mut self, name: &mut Name, index: Vec<Expr>, start: u32) -> bool {
+        let numbers: Option<Vec<String>> =
+            index.iter().map(|e| e.kind.whole().map(|n| n.to_string())).collect();
+        if let Some(numbers) = numbers {
+            name.text = format!("{}[{}]", name.text, numbers.join(",")).into();
+            name.at = self.since(start).into();
+            return true;
         }
-        Some(parts.join(","))
+        let all = index.iter().map(|e| e.at.0).reduce(Span::to);
+        let what = say!("an index that is no constant; arrays are carried as single variables");
+        self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, all.unwrap_or_default(), what));
+        false
     }
 
     /// `f(a, n := b, q => c)`.

@@ -19,11 +19,13 @@
 mod bits;
 mod decl;
 pub(crate) mod expr;
+mod initial;
 pub(crate) mod lex;
 mod literal;
 pub(crate) mod parse;
 mod print;
 mod settle;
+mod shape;
 mod stmt;
 mod types;
 
@@ -40,7 +42,7 @@ pub(crate) use parse::Parser;
 pub use parse::Places;
 pub use print::{Types as Known, Writer};
 pub use settle::settle;
-pub(crate) use types::Types;
+pub(crate) use shape::Types;
 pub use types::elementary;
 
 /// Reads statements of Structured Text; the text must end behind them.
@@ -53,9 +55,36 @@ pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
 
 /// Reads one expression; `;` may follow.
 pub fn expression(text: &str, place: Places, report: &mut Report) -> Expr {
-    let mut parser = Parser::new(text, place, report);
-    let expr = parser.expr();
-    while parser.eat(";") {}
-    parser.expect_end();
-    expr
+    Parser::new(text, place, report).whole()
+}
+
+/// The same for formats whose elements of arrays become single variables with names such as `a[1]`.
+pub mod single {
+    use g7_model::{Expr, Stmt};
+
+    use super::{Parser, Places};
+    use crate::report::Report;
+
+    /// See [`super::statements`].
+    pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
+        let mut parser = Parser::single(text, place, report);
+        let statements = parser.statements();
+        parser.expect_end();
+        statements
+    }
+
+    /// See [`super::expression`].
+    pub fn expression(text: &str, place: Places, report: &mut Report) -> Expr {
+        Parser::single(text, place, report).whole()
+    }
+
+    /// See [`crate::il::statements`].
+    pub fn instructions(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
+        Parser::single(text, place, report).il_statements()
+    }
+
+    /// See [`crate::il::expression`].
+    pub fn result(text: &str, place: Places, report: &mut Report) -> Expr {
+        Parser::single(text, place, report).il_expression()
+    }
 }

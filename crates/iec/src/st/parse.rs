@@ -23,6 +23,8 @@ pub(crate) struct Parser<'a> {
     place: Places<'a>,
     pub(crate) report: &'a mut Report,
     nested: u32,
+    /// True if an element of an array becomes a variable with a name such as `a[1]`.
+    pub(super) single: bool,
     /// The token at which the last problem was reported.
     told: Option<usize>,
 }
@@ -30,7 +32,20 @@ pub(crate) struct Parser<'a> {
 impl<'a> Parser<'a> {
     pub(crate) fn new(text: &'a str, place: Places<'a>, report: &'a mut Report) -> Parser<'a> {
         let (tokens, comments) = tokens(text);
-        Parser { text, tokens, comments, pos: 0, place, report, nested: 0, told: None }
+        Parser { text, tokens, comments, pos: 0, place, report, nested: 0, single: false, told: None }
+    }
+
+    /// A parser for a format whose elements of arrays become single variables.
+    pub(super) fn single(text: &'a str, place: Places<'a>, report: &'a mut Report) -> Parser<'a> {
+        Parser { single: true, ..Parser::new(text, place, report) }
+    }
+
+    /// Reads the whole text as one expression; `;` may follow.
+    pub(super) fn whole(mut self) -> Expr {
+        let expr = self.expr();
+        while self.eat(";") {}
+        self.expect_end();
+        expr
     }
 
     // Tokens

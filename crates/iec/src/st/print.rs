@@ -70,6 +70,11 @@ pub struct Writer<'a> {
     pub types: &'a Types<'a>,
 }
 
+/// A bit as a condition.
+fn read(bit: &Bit) -> Text {
+    Text { text: bit.read(), ty: Ty::Known(Type::Bool), strength: BinaryOp::Ne.strength() }
+}
+
 /// The operator as the standard has it: `·` is an AND.
 fn standard(op: BinaryOp) -> BinaryOp {
     if op == BinaryOp::Dot { BinaryOp::And } else { op }
@@ -160,10 +165,7 @@ impl Writer<'_> {
             ExprKind::Unary(op, inner) => self.unary(*op, inner),
             ExprKind::Binary(op, a, b) => self.binary(*op, a, b),
             ExprKind::Call(path, args) => self.call(path, args),
-            ExprKind::Element(path, index, _) => {
-                let index: Vec<String> = index.iter().map(|e| self.plain(e)).collect();
-                Text::operand(format!("{}[{}]", self.path(path).text, index.join(", ")), Ty::Unknown)
-            }
+            ExprKind::Element(path, index, bit) => self.element(path, index, bit.as_deref()),
             // `standard` has removed these, so they do not occur here.
             ExprKind::Timer { .. } | ExprKind::List(_) | ExprKind::Bad => {
                 Text::operand("FALSE".into(), Ty::Unknown)
@@ -232,14 +234,31 @@ impl Writer<'_> {
     }
 
     /// The bit of a variable that a path names.
-    fn bit<'p>(&self, path: &'p Path) -> Option<Bit<'p>> {
+    fn bit(&self, path: &Path) -> Option<Bit> {
         let [name, number] = path.names.as_slice() else { return None };
         Bit::of(&name.text, *self.types.names.get(&*name.text)?, &number.text)
     }
 
+    /// The bit of an element of an array.
+    fn bit_of(&self, path: &Path, index: &[Expr], bit: &Name) -> Option<Bit> {
+        let element = self.element(path, index, None);
+        let Ty::Known(ty) = element.ty else { return None };
+        Bit::of(&element.text, ty, &bit.text)
+    }
+
+    /// An element of an array, or a bit of one.
+    fn element(&self, path: &Path, index: &[Expr], bit: Option<&Name>) -> Text {
+        if let Some(bit) = bit.and_then(|b| self.bit_of(path, index, b)) {
+            return read(&bit);
+        }
+        let index: Vec<String> = index.iter().map(|e| self.plain(e)).collect();
+        let array = self.path(path);
+        Text::operand(format!("{}[{}]", array.text, index.join(", ")), array.ty)
+    }
+
     fn path(&self, path: &Path) -> Text {
         if let Some(bit) = self.bit(path) {
-            return Text { text: bit.read(), ty: Ty::Known(Type::Bool), strength: BinaryOp::Ne.strength() };
+            return read(&bit);
         }
         let ty = match path.names.as_slice() {
             [one] => self.types.names.get(&*one.text).copied(),
@@ -332,9 +351,12 @@ impl Writer<'_> {
         };
         match &stmt.kind {
             StmtKind::Assign { target, value } => {
-                if let ExprKind::Path(path) = &target.kind
-                    && let Some(bit) = self.bit(path)
-                {
+                let bit = match &target.kind {
+                    ExprKind::Path(path) => self.bit(path),
+                    ExprKind::Element(path, index, Some(bit)) => self.bit_of(path, index, bit),
+                    _ => None,
+                };
+                if let Some(bit) = bit {
                     return line(&bit.write(&self.condition(value)));
                 }
                 let target = self.text(target);

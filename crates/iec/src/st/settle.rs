@@ -1,51 +1,58 @@
 //! Gives each name the spelling of its declaration.
 //!
-//! IEC 61131-3 ignores case, a .g7 document does not. An element of a structure or array is one
-//! variable with a name such as `a[1]` or `s.x`.
+//! IEC 61131-3 ignores case, a .g7 document does not. An element of a structure or array can be one variable with a
+//! name such as `a[1]` or `s.x`, or a member of a type of the file.
 
 use std::collections::HashMap;
 
 use g7_model::{
-    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Path, Stmt,
-    StmtKind, Target, Work,
+    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name,
+    Path, Stmt, StmtKind, Target, VarDecl, Work,
 };
 
 /// Gives every name in a document the spelling of its declaration.
 pub fn settle(document: &mut Document) {
     let mut file = Spelling::default();
+    let mut types = Types::new();
     for item in &document.items {
         match item {
-            Item::Var(v) => v.names.iter().for_each(|n| file.declare(n)),
-            Item::Action(a) => file.declare(&a.name),
-            Item::Section(s) => file.declare(&s.name),
-            Item::Function(f) => file.declare(&f.name),
-            Item::Chart(c) => file.declare(&c.name),
+            Item::Var(v) => file.variables(v),
+            Item::Action(a) => file.declare(&a.name, None),
+            Item::Section(s) => file.declare(&s.name, None),
+            Item::Function(f) => file.declare(&f.name, None),
+            Item::Chart(c) => file.declare(&c.name, None),
+            Item::Composed(c) => _ = types.insert(upper(&c.name), (c.name.text.clone(), of_type(c))),
             _ => {}
         }
     }
     let mut steps = Spelling::default();
     for chart in document.charts() {
-        chart.steps().for_each(|s| steps.declare(&s.name));
+        chart.steps().for_each(|s| steps.declare(&s.name, None));
     }
     let charts: HashMap<String, (Spelling, Spelling)> =
         document.charts().map(|c| (upper(&c.name), of_chart(c))).collect();
     for item in &mut document.items {
-        let mut settler = Settler { names: vec![&file], steps: vec![&steps] };
+        let mut settler = Settler { names: vec![&file], steps: vec![&steps], types: &types };
         match item {
-            Item::Var(v) => v.init.iter_mut().for_each(|e| settler.expr(e)),
+            Item::Var(v) => settler.declaration(v),
             Item::Action(a) => settler.body(&mut a.body),
             Item::Section(s) => settler.block(&mut s.body),
             Item::Function(f) => {
                 let mut own = Spelling::default();
-                own.declare(&f.name);
-                f.params.iter().for_each(|p| own.declare(&p.name));
-                f.body.locals.iter().flat_map(|l| &l.names).for_each(|n| own.declare(n));
-                Settler { names: vec![&own, &file], steps: Vec::new() }.block(&mut f.body);
+                own.declare(&f.name, None);
+                f.params.iter().for_each(|p| own.declare(&p.name, None));
+                own.locals(&f.body);
+                Settler { names: vec![&own, &file], steps: Vec::new(), types: &types }.block(&mut f.body);
+            }
+            Item::Composed(c) => {
+                let own = of_type(c);
+                Settler { names: vec![&own, &file], steps: Vec::new(), types: &types }.composed(c);
             }
             Item::Pre(body, _) | Item::Post(body, _) => settler.body(body),
             Item::Chart(c) => {
                 if let Some((own, own_steps)) = charts.get(&upper(&c.name)) {
-                    settler = Settler { names: vec![own, &file], steps: vec![own_steps, &steps] };
+                    settler =
+                        Settler { names: vec![own, &file], steps: vec![own_steps, &steps], types: &types };
                 }
                 settler.chart(c);
             }
@@ -58,15 +65,34 @@ fn upper(name: &Name) -> String {
     name.text.to_uppercase()
 }
 
+/// The types of the file by their upper-case names: their spelling, and their members.
+type Types = HashMap<String, (Box<str>, Spelling)>;
+
+/// A declared name.
+#[derive(Debug)]
+struct Entry {
+    text: Box<str>,
+    /// Its type in upper case, if that is one of the file.
+    of: Option<String>,
+}
+
 /// Declared names by their upper-case forms.
 #[derive(Debug, Default)]
 struct Spelling {
-    names: HashMap<String, Box<str>>,
+    names: HashMap<String, Entry>,
 }
 
 impl Spelling {
-    fn declare(&mut self, name: &Name) {
-        self.names.entry(upper(name)).or_insert_with(|| name.text.clone());
+    fn declare(&mut self, name: &Name, of: Option<&Name>) {
+        self.names.entry(upper(name)).or_insert_with(|| Entry { text: name.text.clone(), of: of.map(upper) });
+    }
+
+    fn variables(&mut self, decl: &VarDecl) {
+        decl.names.iter().for_each(|n| self.declare(n, decl.of.as_deref()));
+    }
+
+    fn locals(&mut self, block: &Block) {
+        block.locals.iter().flat_map(|l| &l.names).for_each(|n| self.declare(n, None));
     }
 }
 
@@ -77,36 +103,50 @@ fn of_chart(chart: &Chart) -> (Spelling, Spelling) {
     let mut steps = Spelling::default();
     for item in &chart.items {
         match item {
-            ChartItem::Var(v) => v.names.iter().for_each(|n| own.declare(n)),
-            ChartItem::Action(a) => own.declare(&a.name),
-            ChartItem::Section(s) => own.declare(&s.name),
-            ChartItem::Step(s) => steps.declare(&s.name),
+            ChartItem::Var(v) => own.variables(v),
+            ChartItem::Action(a) => own.declare(&a.name, None),
+            ChartItem::Section(s) => own.declare(&s.name, None),
+            ChartItem::Step(s) => steps.declare(&s.name, None),
             ChartItem::Transition(_) | ChartItem::Pre(..) | ChartItem::Post(..) => {}
         }
     }
     (own, steps)
 }
 
+/// The members and parameters of a type, and the local variables of its body.
+fn of_type(composed: &Composed) -> Spelling {
+    let mut own = Spelling::default();
+    composed.members.iter().chain(&composed.inouts).for_each(|v| own.variables(v));
+    composed.body.iter().for_each(|b| own.locals(b.block()));
+    own
+}
+
+/// A name without the index that it may have, and the index.
+fn bare(name: &str) -> (&str, &str) {
+    name.split_at(name.find('[').unwrap_or(name.len()))
+}
+
 struct Settler<'a> {
     /// The scopes of variables, actions, functions and charts, the innermost first.
     names: Vec<&'a Spelling>,
     steps: Vec<&'a Spelling>,
+    types: &'a Types,
 }
 
-fn find<'a>(spellings: &[&'a Spelling], upper: &str) -> Option<&'a str> {
-    spellings.iter().find_map(|s| s.names.get(upper)).map(|n| &**n)
+fn find<'a>(spellings: &[&'a Spelling], upper: &str) -> Option<&'a Entry> {
+    spellings.iter().find_map(|s| s.names.get(upper))
 }
 
-impl Settler<'_> {
+impl<'a> Settler<'a> {
     fn name(&self, name: &mut Name) {
-        if let Some(text) = find(&self.names, &upper(name)) {
-            name.text = text.into();
+        if let Some(entry) = find(&self.names, &upper(name)) {
+            name.text = entry.text.clone();
         }
     }
 
     fn step(&self, name: &mut Name) {
-        if let Some(text) = find(&self.steps, &upper(name)) {
-            name.text = text.into();
+        if let Some(entry) = find(&self.steps, &upper(name)) {
+            name.text = entry.text.clone();
         }
     }
 
@@ -127,31 +167,93 @@ impl Settler<'_> {
         true
     }
 
-    /// Joins elements of structures and arrays into one name, and drops the list of globals before
-    /// a name.
-    fn path(&self, path: &mut Path) {
+    /// Gives a path its spelling: joins elements of structures and arrays into one name, and drops the list of globals
+    /// before a name. Returns the type of what it names, if that is one of the file.
+    fn path(&self, path: &mut Path) -> Option<&'a str> {
         if self.step_path(path) {
-            return;
+            return None;
         }
         for from in 0..path.names.len().min(3) {
             let rest = path.names.get(from..).unwrap_or(&[]);
-            let found = (1..=rest.len().min(8)).rev().find_map(|n| {
+            let first = rest.first()?;
+            let joined = (1..=rest.len().min(8)).rev().find_map(|n| {
                 let joined: Vec<String> = rest.iter().take(n).map(upper).collect();
-                find(&self.names, &joined.join(".")).map(|text| (n, text.to_string()))
+                find(&self.names, &joined.join(".")).map(|entry| (n, entry, ""))
             });
-            let Some((n, text)) = found else { continue };
-            let Some(first) = rest.first() else { return };
-            let name = Name { text: text.into(), at: first.at };
-            let behind: Vec<Name> = rest.iter().skip(n).cloned().collect();
+            let (plain, index) = bare(&first.text);
+            let array = || find(&self.names, &plain.to_uppercase()).map(|entry| (1, entry, index));
+            let Some((n, entry, index)) = joined.or_else(array) else { continue };
+            let name = Name { text: format!("{}{}", entry.text, self.index(index)).into(), at: first.at };
+            let mut behind: Vec<Name> = rest.iter().skip(n).cloned().collect();
+            let of = self.members(entry.of.as_deref(), &mut behind);
             path.names = std::iter::once(name).chain(behind).collect();
-            return;
+            return of;
         }
+        None
+    }
+
+    /// Gives the names of members of a type their spelling. Returns the type of the last one.
+    fn members(&self, mut of: Option<&'a str>, names: &mut [Name]) -> Option<&'a str> {
+        for name in names {
+            let entry = self.member(of?, name)?;
+            of = entry.of.as_deref();
+        }
+        of
+    }
+
+    fn member(&self, of: &str, name: &mut Name) -> Option<&'a Entry> {
+        let (_, members) = self.types.get(of)?;
+        let (plain, index) = bare(&name.text);
+        let entry = members.names.get(&plain.to_uppercase())?;
+        name.text = format!("{}{}", entry.text, self.index(index)).into();
+        Some(entry)
+    }
+
+    /// The index in the name of an instance: `[i + 1]`.
+    fn index(&self, index: &str) -> String {
+        let end = index.find([' ', ']']).unwrap_or(index.len());
+        let name = index.get(1..end).unwrap_or("");
+        match find(&self.names, &name.to_uppercase()) {
+            Some(entry) => format!("[{}{}", entry.text, index.get(end..).unwrap_or("")),
+            None => index.to_owned(),
+        }
+    }
+
+    fn declaration(&self, decl: &mut VarDecl) {
+        let of = decl.of.as_ref().map(|of| upper(of));
+        if let (Some(name), Some((text, _))) = (&mut decl.of, of.as_ref().and_then(|of| self.types.get(of))) {
+            name.text = text.clone();
+        }
+        for (low, high) in decl.array.iter_mut().flat_map(|a| &mut a.dimensions) {
+            self.expr(low);
+            self.expr(high);
+        }
+        decl.init.iter_mut().for_each(|e| self.value(e, of.as_deref()));
+    }
+
+    /// An initial value. The names in that of a structure are those of the members.
+    fn value(&self, e: &mut Expr, of: Option<&str>) {
+        match &mut e.kind {
+            ExprKind::List(values) => values.iter_mut().for_each(|(_, e)| self.value(e, of)),
+            ExprKind::Call(path, args) if path.names.is_empty() => {
+                for arg in args {
+                    let entry = of.zip(arg.name.as_mut()).and_then(|(of, name)| self.member(of, name));
+                    self.value(&mut arg.value, entry.and_then(|e| e.of.as_deref()));
+                }
+            }
+            _ => self.expr(e),
+        }
+    }
+
+    fn composed(&self, composed: &mut Composed) {
+        composed.members.iter_mut().chain(&mut composed.inouts).for_each(|v| self.declaration(v));
+        composed.body.iter_mut().for_each(|b| self.body(b));
     }
 
     fn chart(&self, chart: &mut Chart) {
         for item in &mut chart.items {
             match item {
-                ChartItem::Var(v) => v.init.iter_mut().for_each(|e| self.expr(e)),
+                ChartItem::Var(v) => self.declaration(v),
                 ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a)),
                 ChartItem::Transition(t) => {
                     t.from.iter_mut().chain(&mut t.to).for_each(|n| self.step(n));
@@ -170,7 +272,7 @@ impl Settler<'_> {
             ActionKind::Qualified { time, target, condition, .. } => {
                 time.iter_mut().chain(condition).for_each(|e| self.expr(e));
                 match target {
-                    Target::Path(path) => self.path(path),
+                    Target::Path(path) => _ = self.path(path),
                     Target::Work(work) => self.work(work),
                     Target::Element(element) => self.expr(element),
                     Target::Direct(..) => {}
@@ -217,7 +319,10 @@ impl Settler<'_> {
                 self.expr(value);
             }
             StmtKind::Call(path, args) => {
-                self.path(path);
+                let of = self.path(path);
+                for name in args.iter_mut().filter_map(|a| a.name.as_mut()) {
+                    of.and_then(|of| self.member(of, name));
+                }
                 self.args(args);
             }
             StmtKind::If(arms, otherwise) => {
@@ -265,7 +370,7 @@ impl Settler<'_> {
 
     fn expr(&self, e: &mut Expr) {
         match &mut e.kind {
-            ExprKind::Path(path) => self.path(path),
+            ExprKind::Path(path) => _ = self.path(path),
             ExprKind::Unary(_, a) => self.expr(a),
             ExprKind::Binary(_, a, b) => {
                 self.expr(a);
@@ -291,10 +396,13 @@ impl Settler<'_> {
 
     /// Settles a declared function, or a standard one in upper case.
     fn function(&self, path: &mut Path) {
-        let [name] = path.names.as_mut_slice() else { return self.path(path) };
+        let [name] = path.names.as_mut_slice() else {
+            self.path(path);
+            return;
+        };
         let capitals = upper(name);
-        if let Some(text) = find(&self.names, &capitals) {
-            name.text = text.into();
+        if let Some(entry) = find(&self.names, &capitals) {
+            name.text = entry.text.clone();
         } else {
             name.text = capitals.into();
         }

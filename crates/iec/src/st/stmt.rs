@@ -1,7 +1,9 @@
 //! Statements of Structured Text.
 
 use g7_model::codes;
-use g7_model::{Arg, CaseArm, Expr, ExprKind, Literal, Path, Stmt, StmtKind, say};
+use g7_model::{
+    Arg, BinaryOp, CaseArm, Expr, ExprKind, Literal, Name, Path, Stmt, StmtKind, element_parts, say,
+};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -311,14 +313,60 @@ impl Parser<'_> {
         self.variable()
     }
 
-    /// `a.b(…)`: a function block in a structure.
+    /// `a.b(…)`, `a[i](…)`: a function block in a structure or an array.
     fn method(&mut self, target: Expr, list: &mut Vec<Stmt>, start: u32) {
         let args: Vec<Arg> = self.args().list;
         self.end_statement();
-        if let ExprKind::Path(path) = target.kind {
+        if let Some(path) = self.called(target) {
             let kind = StmtKind::Call(path, args);
             list.push(Stmt { kind, at: self.since(start).into() });
         }
+    }
+
+    /// The path of a function block that is called. An index at its end is a part of the name.
+    pub(crate) fn called(&mut self, e: Expr) -> Option<Path> {
+        let at = e.at.0;
+        let (path, index) = match e.kind {
+            ExprKind::Path(path) => return Some(path),
+            ExprKind::Element(path, index, None) => (*path, index),
+            _ => return None,
+        };
+        if let Some(names) = instance(&path, &index) {
+            return Some(Path { names });
+        }
+        let what = say!(
+            "the index of a function block that is called is one number, a name, or a name with a number added"
+        );
+        self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
+        None
+    }
+}
+
+/// The names of an instance with the indexes in them.
+fn instance(path: &Path, index: &[Expr]) -> Option<Vec<Name>> {
+    let mut names: Vec<Name> = Vec::new();
+    for (part, own) in element_parts(path, index) {
+        names.extend(part.names);
+        match (own, names.last_mut()) {
+            ([], _) => {}
+            ([one], Some(last)) => last.text = format!("{}[{}]", last.text, chosen(one)?).into(),
+            _ => return None,
+        }
+    }
+    Some(names)
+}
+
+/// The text of an index that a name of an instance can have: `3`, `i`, `i + 1`.
+fn chosen(index: &Expr) -> Option<String> {
+    let name = |e: &Expr| match &e.kind {
+        ExprKind::Path(path) if path.names.len() == 1 => path.names.first().map(|n| n.text.to_string()),
+        _ => None,
+    };
+    let added = |e: &Expr| e.kind.whole().filter(|n| *n >= 0);
+    match &index.kind {
+        ExprKind::Binary(BinaryOp::Add, a, b) => Some(format!("{} + {}", name(a)?, added(b)?)),
+        ExprKind::Binary(BinaryOp::Sub, a, b) => Some(format!("{} - {}", name(a)?, added(b)?)),
+        kind => kind.whole().map(|n| n.to_string()).or_else(|| name(index)),
     }
 }
 

@@ -1,16 +1,17 @@
-//! The types of a file: elementary ones and those that it declares.
+//! Reads the types of a file: elementary ones and those that it declares.
 
-use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Expr, Name, Type, say};
+use g7_model::{Composed, Name, Place, Type, VarDecl, say};
 
+use super::initial::{Initial, declared};
 use super::lex::Kind;
 use super::parse::Parser;
+use super::shape::{Shape, Types};
 
-/// The most elements of one array or structure, at all levels together.
-const MOST_ELEMENTS: usize = 2000;
+/// The most dimensions of an array.
+const MOST_DIMENSIONS: usize = 16;
 
 /// An elementary type or standard function block by its name in capitals.
 pub fn elementary(upper: &str) -> Option<Type> {
@@ -18,56 +19,6 @@ pub fn elementary(upper: &str) -> Option<Type> {
         "LTIME" => Some(Type::Time),
         "WSTRING" => Some(Type::STRING),
         _ => Type::named(upper),
-    }
-}
-
-/// The structure of a type.
-#[derive(Clone, Debug)]
-pub(crate) enum Shape {
-    Simple(Type, Option<Expr>),
-    /// The names of its values, numbered from 0, and its initial value.
-    Enum(Vec<Name>, Option<Expr>),
-    Struct(Vec<(Name, Shape)>),
-    Array(Vec<(i64, i64)>, Box<Shape>),
-    /// An unknown function block or type.
-    Unknown(Name),
-}
-
-/// The types that a file declares, by their names in upper case.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Types {
-    shapes: HashMap<String, Shape>,
-    /// The values of all enumerations, with their numbers.
-    pub(crate) values: Vec<(Name, i128)>,
-}
-
-impl Types {
-    /// Adds a type, and its values if it is an enumeration.
-    pub(crate) fn add(&mut self, name: &Name, shape: Shape) {
-        if let Shape::Enum(names, _) = &shape {
-            self.values.extend(names.iter().cloned().zip(0..));
-        }
-        self.shapes.insert(name.text.to_ascii_uppercase(), shape);
-    }
-
-    fn get(&self, name: &str) -> Option<&Shape> {
-        self.shapes.get(&name.to_ascii_uppercase())
-    }
-}
-
-impl Shape {
-    /// The number of variables that it stands for.
-    pub(super) fn size(&self) -> usize {
-        match self {
-            Shape::Struct(fields) => fields.iter().fold(0, |n: usize, (_, f)| n.saturating_add(f.size())),
-            Shape::Array(bounds, element) => {
-                let length = |(from, to): &(i64, i64)| {
-                    usize::try_from(to.saturating_sub(*from).saturating_add(1)).unwrap_or(usize::MAX)
-                };
-                bounds.iter().map(length).fold(element.size(), usize::saturating_mul)
-            }
-            _ => 1,
-        }
     }
 }
 
@@ -89,7 +40,12 @@ impl Parser<'_> {
                 self.bump();
             }
             self.expect(":");
-            let mut shape = self.shape(types);
+            if self.at_word("STRUCT") {
+                self.structure(&name, types);
+                self.eat(";");
+                continue;
+            }
+            let mut shape = self.shape(&name, types);
             if self.eat(":=") {
                 let init = self.expr();
                 shape = match shape {
@@ -97,8 +53,7 @@ impl Parser<'_> {
                     Shape::Enum(names, _) => Shape::Enum(names, Some(init)),
                     other => {
                         let at = init.at.0;
-                        let what =
-                            say!("initial values of a structure's or array's type are not carried over");
+                        let what = say!("initial values of an array's type are not carried over");
                         self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
                         other
                     }
@@ -121,34 +76,30 @@ impl Parser<'_> {
         }
     }
 
-    /// Reads a type.
-    pub(crate) fn shape(&mut self, types: &Types) -> Shape {
-        let start = self.token().start;
+    /// Reads the type of a variable, or that of a type with this name.
+    pub(crate) fn shape(&mut self, of: &Name, types: &mut Types) -> Shape {
         if !self.enter() {
             return Shape::Simple(Type::Bool, None);
         }
-        let shape = self.shape_of(types);
+        let shape = self.shape_of(of, types);
         self.leave();
-        if shape.size() > MOST_ELEMENTS {
-            let at = self.range(start as usize, self.behind());
-            let what = say!("an array or structure of more than {MOST_ELEMENTS} elements");
-            self.say(&codes::NOT_CARRIED, &at, what);
-            return Shape::Simple(Type::Bool, None);
-        }
         shape
     }
 
-    fn shape_of(&mut self, types: &Types) -> Shape {
+    fn shape_of(&mut self, of: &Name, types: &mut Types) -> Shape {
         let at = self.here();
         let upper = self.word();
         match upper.as_str() {
-            "ARRAY" => return self.array(types),
-            "STRUCT" => return self.structure(types),
+            "ARRAY" => return self.array(of, types),
+            "STRUCT" => {
+                let name = types.free(of);
+                return self.structure(&name, types);
+            }
             "POINTER" | "REF_TO" | "REFERENCE" => {
                 self.say(&codes::NOT_CARRIED, &at, say!("there are no pointers"));
                 self.bump();
                 self.eat_word("TO");
-                return self.shape(types);
+                return self.shape(of, types);
             }
             "DATE" | "DT" | "DATE_AND_TIME" | "TOD" | "TIME_OF_DAY" | "LDT" | "LTOD" | "LDATE" => {
                 self.say(&codes::NOT_CARRIED, &at, say!("there are no dates and times of day"));
@@ -239,69 +190,73 @@ impl Parser<'_> {
         Shape::Enum(names, None)
     }
 
-    fn array(&mut self, types: &Types) -> Shape {
+    fn array(&mut self, of: &Name, types: &mut Types) -> Shape {
         self.bump();
         self.expect("[");
         let mut bounds = Vec::new();
-        while let Some(from) = self.bound() {
-            self.expect("..");
-            let Some(to) = self.bound() else { break };
-            bounds.push((from, to.max(from)));
+        loop {
+            let from = self.expr();
+            if !self.expect("..") {
+                self.skip_to(&["OF"]);
+                break;
+            }
+            bounds.push((from, self.expr()));
             if !self.eat(",") {
+                self.expect("]");
                 break;
             }
         }
-        self.expect("]");
         self.expect_word("OF");
-        let element = self.shape(types);
-        Shape::Array(bounds, Box::new(element))
-    }
-
-    fn bound(&mut self) -> Option<i64> {
-        let negative = self.eat("-");
-        let token = self.token();
-        let number = self.slice(token).parse::<i64>().ok().filter(|_| token.kind == Kind::Number);
-        match number {
-            Some(n) => {
-                self.bump();
-                Some(if negative { -n } else { n })
+        // The dimensions of rows stand behind those of the array: `a[1][2]` is `a[1, 2]`.
+        let element = match self.shape(of, types) {
+            Shape::Array(inner, element) => {
+                bounds.extend(inner);
+                element
             }
-            None => {
-                let at = self.here();
-                self.say(&codes::NOT_CARRIED, &at, say!("the limits of an array are written as numbers"));
-                self.skip_to(&["OF"]);
-                None
-            }
+            element => Box::new(element),
+        };
+        if bounds.is_empty() || bounds.len() > MOST_DIMENSIONS {
+            let at = self.here();
+            self.say(&codes::NOT_CARRIED, &at, say!("an array has 1 to {MOST_DIMENSIONS} dimensions"));
+            return *element;
         }
+        Shape::Array(bounds, element)
     }
 
-    fn structure(&mut self, types: &Types) -> Shape {
-        self.bump();
-        let mut fields = Vec::new();
+    /// Reads a structure, and declares its type.
+    fn structure(&mut self, name: &Name, types: &mut Types) -> Shape {
+        let start = self.bump().start;
+        let mut members: Vec<VarDecl> = Vec::new();
         while !self.at_end() && !self.at_word("END_STRUCT") {
             let mut names = Vec::new();
+            let from = self.token().start;
             while let Some(name) = self.name(say!("the name of an element")) {
                 names.push(name);
                 if !self.eat(",") {
                     break;
                 }
             }
-            if names.is_empty() {
-                break;
-            }
+            let Some(first) = names.first().cloned() else { break };
             self.expect(":");
-            let mut shape = self.shape(types);
-            if self.eat(":=") {
-                let init = self.expr();
-                if let Shape::Simple(_, value) | Shape::Enum(_, value) = &mut shape {
-                    *value = Some(init);
-                }
-            }
+            let shape = self.shape(&first, types);
+            let init: Option<Initial> = self.eat(":=").then(|| self.initial());
             self.eat(";");
-            fields.extend(names.into_iter().map(|name| (name, shape.clone())));
+            let at: Place = self.since(from).into();
+            let comment = self.comment_behind();
+            for name in names {
+                let (mut member, problem) = declared(&name, &shape, init.as_ref(), at);
+                member.comment.clone_from(&comment);
+                problem.into_iter().for_each(|p| self.report.put(p));
+                members.push(member);
+            }
         }
         self.expect_word("END_STRUCT");
-        self.eat(";");
-        Shape::Struct(fields)
+        let at = self.since(start).into();
+        let name = name.clone();
+        types.add(&name, Shape::Struct(name.clone()));
+        let made =
+            Composed { name: name.clone(), comment: None, members, inouts: Vec::new(), body: None, at };
+        types.structures.push(made);
+        Shape::Struct(name)
     }
 }

@@ -124,7 +124,10 @@ impl<'d> Lower<'d> {
         if made.names.is_empty() {
             return None;
         }
-        made.init = decl.init.as_ref().map(|e| self.constant(e, chart));
+        made.init = decl.init.as_ref().map(|e| self.initial_value(e, chart));
+        for (low, high) in made.array.iter_mut().flat_map(|a| &mut a.dimensions) {
+            (*low, *high) = (self.constant(low, chart), self.constant(high, chart));
+        }
         if let Some(other) = decl.address.as_ref().filter(|a| !is_address(&a.text)) {
             let what = say!(
                 "the channel `{}` is no address of the standard, such as %IX0.1; it is left out",

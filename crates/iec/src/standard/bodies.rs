@@ -37,9 +37,14 @@ impl<'d> Lower<'d> {
     pub(super) fn expr(&mut self, e: &Expr, at: &At<'d>) -> Expr {
         let span = e.at.0;
         let kind = match &e.kind {
-            ExprKind::Element(..) | ExprKind::List(_) => {
+            ExprKind::List(_) => {
                 self.no_element(span);
                 return e.clone();
+            }
+            ExprKind::Element(path, index, bit) => {
+                let Some(array) = self.array(path, span, at) else { return e.clone() };
+                let index = index.iter().map(|i| self.expr(i, at)).collect();
+                ExprKind::Element(Box::new(array), index, bit.clone())
             }
             ExprKind::Literal(_) | ExprKind::Bad => return e.clone(),
             ExprKind::Path(path) => return self.value(path, span, at),
@@ -81,11 +86,8 @@ impl<'d> Lower<'d> {
         let args: Vec<_> = args.iter().map(arg).collect();
         args.into_iter()
             .map(|(name, output, value)| {
-                if let (true, ExprKind::Path(path)) = (output, &value.kind) {
-                    self.note(path, true, at);
-                }
                 if output {
-                    self.sets_step(&value, at);
+                    self.writes(&value, at);
                 }
                 Arg { name, output, value: self.expr(&value, at) }
             })
@@ -127,6 +129,28 @@ impl<'d> Lower<'d> {
             }
             _ => self.nothing(span, say!("`{}` has no counterpart", path.text())),
         }
+    }
+
+    /// The name of an array, of which an element is meant.
+    fn array(&mut self, path: &Path, span: Span, at: &At<'d>) -> Option<Path> {
+        let Some(Ref::Var(_)) = self.scopes.refer(at.chart, &path.names) else {
+            self.no_element(span);
+            return None;
+        };
+        match self.value(path, span, at).kind {
+            ExprKind::Path(path) => Some(path),
+            _ => None,
+        }
+    }
+
+    /// Notes what an assignment or an output of a call writes.
+    fn writes(&mut self, target: &Expr, at: &At<'d>) {
+        match &target.kind {
+            ExprKind::Path(path) => self.note(path, true, at),
+            ExprKind::Element(path, ..) => self.note(path, true, at),
+            _ => {}
+        }
+        self.sets_step(target, at);
     }
 
     /// A bit of a variable, or of the copy that a condition reads.
@@ -297,6 +321,13 @@ impl<'d> Lower<'d> {
         nodes::name(&[&name], span)
     }
 
+    /// An initial value; of an array, a list of them.
+    pub(super) fn initial_value(&mut self, e: &Expr, chart: Option<usize>) -> Expr {
+        let ExprKind::List(values) = &e.kind else { return self.constant(e, chart) };
+        let values = values.iter().map(|(times, e)| (*times, self.constant(e, chart))).collect();
+        Expr { kind: ExprKind::List(values), at: e.at }
+    }
+
     /// An initial value, evaluated to one literal.
     pub(super) fn constant(&mut self, e: &Expr, chart: Option<usize>) -> Expr {
         match self.folded(e, chart, MOST_CONSTANTS) {
@@ -364,10 +395,7 @@ impl<'d> Lower<'d> {
     fn stmt(&mut self, stmt: &Stmt, at: &At<'d>) -> Stmt {
         let kind = match &stmt.kind {
             StmtKind::Assign { target, value } => {
-                if let ExprKind::Path(path) = &target.kind {
-                    self.note(path, true, at);
-                }
-                self.sets_step(target, at);
+                self.writes(target, at);
                 StmtKind::Assign { target: self.expr(target, at), value: self.expr(value, at) }
             }
             StmtKind::Call(path, args) => return self.invoked(path, args, stmt.at.0, at),

@@ -151,13 +151,16 @@ impl<'d> Lower<'d> {
         if let Some(known) = self.copies.get(&key) {
             return nodes::name(&[known], span);
         }
-        let Some(ty) = self.scopes.decl(key).map(|d| d.ty) else { return nodes::bad(span) };
+        let Some(decl) = self.scopes.decl(key) else { return nodes::bad(span) };
         // The copy is made by a program of its own, so the variable becomes one of the file.
         if key.0.is_some() && self.units.is_empty() {
             self.wanted.insert(key);
         }
         let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
-        let name = self.fresh(None, &format!("{own}_before"), ty, span);
+        let name = self.fresh(None, &format!("{own}_before"), decl.ty, span);
+        if let Some(copy) = self.new_globals.last_mut() {
+            copy.array.clone_from(&decl.array);
+        }
         self.copies.insert(key, name.clone());
         nodes::name(&[&name], span)
     }

@@ -18,6 +18,7 @@
 //!   warning.
 
 mod actions;
+mod arrays;
 mod assemble;
 mod bodies;
 mod counts;
@@ -56,6 +57,7 @@ pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Proble
         let mut out = lower.document();
         if lower.wanted.is_subset(&lower.shared) && lower.read_twins.len() == known {
             without_idle(&mut out);
+            arrays::named(&mut out, &mut lower.names);
             return (out, lower.finish());
         }
         read_twins = std::mem::take(&mut lower.read_twins);

@@ -231,3 +231,29 @@ fn a_block_alone_runs_as_a_program() {
     );
     assert_eq!(problems, Vec::<String>::new());
 }
+
+#[test]
+fn arrays_are_arrays() {
+    let problems = means(
+        "lamps.xml",
+        r#"
+profile iec61131
+input go : BOOL
+input k : INT
+output Lamp : ARRAY[0..1] OF BOOL
+var row : ARRAY[1..3] OF INT := [4, 2(-1)]
+var m : ARRAY[0..1, 1..3] OF INT := [1, 2(2), 1, 2(2)]
+chart Lamps {
+  initial step Off
+  step On {
+    N Lamp[1]
+    P Add
+  }
+  Off -> On when go and row[k] < 9
+  On -> Off when not go
+  action Add { row[k] := row[k] + m[0, k] + m[1, 3] }
+}
+"#,
+    );
+    assert_eq!(problems, Vec::<String>::new());
+}

@@ -7,7 +7,7 @@ use crate::{carried, errors, file, import};
 
 /// Parses the expected text: spellings of the printer do not matter.
 #[track_caller]
-fn same(document: &g7_model::Document, expected: &str) {
+pub(super) fn same(document: &g7_model::Document, expected: &str) {
     let (expected, problems) = g7_syntax::parse(expected, FileId(1));
     assert_eq!(problems, []);
     assert_eq!(g7_syntax::print(document, None), g7_syntax::print(&expected, None));
@@ -61,14 +61,15 @@ fn structures_arrays_enumerations_and_functions() {
          const Red : INT := 0
          const Green : INT := 1
          const Blue : INT := 2
+         struct Pair {
+           a : INT
+           b : INT
+         }
          input go : BOOL
          output done : BOOL
          var c : INT := Green
-         var `p.a` : INT := 1
-         var `p.b` : INT := 2
-         var `v[1]` : INT := 5
-         var `v[2]` : INT := 7
-         var `v[3]` : INT := 7
+         var p : Pair := (a := 1, b := 2)
+         var v : ARRAY[1..3] OF INT := [5, 2(7)]
          function Twice(n : INT) : INT { Twice := n * 2 }
          chart Fork {
            initial step S0
@@ -77,7 +78,7 @@ fn structures_arrays_enumerations_and_functions() {
            S0 -> (A, B) when go
            (A, B) -> S0 when c = Blue
            action Work {
-             `p.b` := Twice(`p.a` + `v[2]`)
+             p.b := Twice(p.a + v[2])
              IF go THEN c := Blue END_IF
              done := c = Blue
            }
@@ -166,101 +167,6 @@ fn a_file_is_known_by_its_content_and_its_name() {
 fn a_program_without_steps_runs_before_the_charts() {
     let text = carried("PROGRAM p VAR n : INT; END_VAR n := n + 1; END_PROGRAM");
     assert!(text.contains("pre {"), "{text}");
-}
-
-/// Instances of function blocks are their variables, calls what the blocks do.
-#[test]
-fn function_blocks_stand_where_they_are_called() {
-    let (document, problems) = import(
-        "FUNCTION_BLOCK Count
-           VAR_INPUT up : BOOL; most : INT := 3; END_VAR
-           VAR_OUTPUT full : BOOL; END_VAR
-           VAR_IN_OUT sum : INT; END_VAR
-           VAR n : INT; edge : R_TRIG; END_VAR
-           edge(CLK := up);
-           IF NOT edge.Q THEN RETURN; END_IF;
-           n := n + 1; sum := sum + 1;
-           full := n >= most;
-         END_FUNCTION_BLOCK
-         FUNCTION_BLOCK Pair
-           VAR_INPUT a : BOOL; END_VAR
-           VAR one : Count; all : INT; END_VAR
-           LD a
-           ST one.up
-           CAL one(sum := all)
-         END_FUNCTION_BLOCK
-         FUNCTION_BLOCK Unused VAR_INPUT a : BOOL; END_VAR a := FALSE; END_FUNCTION_BLOCK
-         PROGRAM Main
-           VAR_INPUT go : BOOL; END_VAR
-           VAR_OUTPUT done : BOOL; END_VAR
-           VAR c : Count; total : INT; p : Pair; END_VAR
-           INITIAL_STEP A: Work(N); END_STEP
-           STEP B: END_STEP
-           TRANSITION FROM A TO B := c.full AND p.one.n >= 3; END_TRANSITION
-           ACTION Work:
-             c(up := go, most := 2, sum := total, full => done);
-             P(a := go);
-           END_ACTION
-         END_PROGRAM",
-    );
-    let words: Vec<&str> = problems.iter().map(|p| &*p.what).collect();
-    assert_eq!(words, ["the function block `Unused` is not used; it is left out"]);
-    same(
-        &document,
-        "profile iec61131
-         input go : BOOL
-         output done : BOOL
-         var `c.up` : BOOL
-         var `c.most` : INT := 3
-         var `c.full` : BOOL
-         var `c.n` : INT
-         var `c.edge` : R_TRIG
-         var total : INT
-         var `p.a` : BOOL
-         var `p.one.up` : BOOL
-         var `p.one.most` : INT := 3
-         var `p.one.full` : BOOL
-         var `p.one.n` : INT
-         var `p.one.edge` : R_TRIG
-         var `p.all` : INT
-         chart Main {
-           initial step A { N Work }
-           step B
-           A -> B when `c.full` and `p.one.n` >= 3
-           action Work {
-             `c.up` := go
-             `c.most` := 2
-             REPEAT
-               `c.edge`(CLK := `c.up`)
-               IF not `c.edge`.Q THEN EXIT END_IF
-               `c.n` := `c.n` + 1
-               total := total + 1
-               `c.full` := `c.n` >= `c.most`
-             UNTIL TRUE END_REPEAT
-             done := `c.full`
-             `p.a` := go
-             `p.one.up` := `p.a`
-             REPEAT
-               `p.one.edge`(CLK := `p.one.up`)
-               IF not `p.one.edge`.Q THEN EXIT END_IF
-               `p.one.n` := `p.one.n` + 1
-               `p.all` := `p.all` + 1
-               `p.one.full` := `p.one.n` >= `p.one.most`
-             UNTIL TRUE END_REPEAT
-           }
-         }",
-    );
-    let (_, problems) = g7_compile::compile(&document);
-    assert_eq!(errors(&problems), <[&str; 0]>::default());
-}
-
-#[test]
-fn a_function_block_that_contains_itself_is_refused() {
-    let (_, problems) = import(
-        "FUNCTION_BLOCK F VAR f : F; END_VAR f(); END_FUNCTION_BLOCK \
-         PROGRAM p VAR f : F; END_VAR f(); END_PROGRAM",
-    );
-    assert!(problems.iter().any(|p| p.what.contains("contains itself")), "{problems:?}");
 }
 
 /// Beremiz and OpenPLC: the ways of a list meet at a label with their result.

@@ -14,6 +14,7 @@ mod instances;
 mod problems;
 #[path = "../../../exchange/tests/support/mod.rs"]
 mod support;
+mod types;
 mod written;
 
 use std::path::Path;

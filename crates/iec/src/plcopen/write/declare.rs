@@ -1,6 +1,6 @@
 //! Declarations of variables.
 
-use g7_model::{Expr, Name, Type, VarDecl, VarKind};
+use g7_model::{Document, Expr, ExprKind, Item, Name, Type, VarDecl, VarKind};
 
 use crate::st::{Known, Writer};
 use crate::xml::element::Element;
@@ -15,11 +15,43 @@ pub(super) fn type_of(ty: Type) -> Element {
     Element::new("type").child(inner)
 }
 
+/// The type of a variable; that of an array has a name.
+fn type_of_variable(decl: &VarDecl) -> Element {
+    match &decl.of {
+        Some(of) => Element::new("type").child(Element::new("derived").with("name", &of.text)),
+        None => type_of(decl.ty),
+    }
+}
+
+/// The types of arrays.
+pub(super) fn data_types(document: &Document) -> Element {
+    let types = Known::default();
+    let bound = |e: &Expr| Writer { types: &types }.plain(e);
+    let dimension = |(low, high): &(Expr, Expr)| {
+        Element::new("dimension").with("lower", bound(low)).with("upper", bound(high))
+    };
+    let one = |item: &Item| {
+        let Item::Type(VarDecl { names, array: Some(array), ty, .. }) = item else { return None };
+        let made = Element::new("array").children(array.dimensions.iter().map(dimension));
+        let base = Element::new("baseType").child(made.child(type_of(*ty).renamed("baseType")));
+        Some(Element::new("dataType").with("name", &names.first()?.text).child(base))
+    };
+    Element::new("dataTypes").children(document.items.iter().filter_map(one))
+}
+
 /// `initialValue`.
 pub(super) fn initial(value: &Expr, ty: Type) -> Element {
     let types = Known::default();
-    let value = Writer { types: &types }.value(value, ty);
-    Element::new("initialValue").child(Element::new("simpleValue").with("value", value))
+    let simple = |e: &Expr| Element::new("simpleValue").with("value", Writer { types: &types }.value(e, ty));
+    let made = match &value.kind {
+        ExprKind::List(values) => Element::new("arrayValue").children(values.iter().map(|(times, e)| {
+            let one = Element::new("value");
+            let one = if *times == 1 { one } else { one.with("repetitionValue", times) };
+            one.child(simple(e))
+        })),
+        _ => simple(value),
+    };
+    Element::new("initialValue").child(made)
 }
 
 /// The element of a list in a program, the name of a global list, and the test for its variables.
@@ -87,7 +119,7 @@ fn variable(decl: &VarDecl, name: &Name) -> Element {
     if let Some(address) = &decl.address {
         element = element.with("address", &address.text);
     }
-    element = element.child(type_of(decl.ty));
+    element = element.child(type_of_variable(decl));
     if let Some(init) = &decl.init {
         element.push(initial(init, decl.ty));
     }
@@ -106,8 +138,10 @@ pub(super) fn external<'v>(variables: impl Iterator<Item = &'v VarDecl> + Clone)
         .filter_map(|constant| {
             let of_kind = variables.clone().filter(|v| is_constant(v) == constant);
             let list: Vec<Element> = of_kind
-                .flat_map(|decl| decl.names.iter().map(move |n| (n, decl.ty)))
-                .map(|(name, ty)| Element::new("variable").with("name", &name.text).child(type_of(ty)))
+                .flat_map(|decl| decl.names.iter().map(move |n| (n, decl)))
+                .map(|(name, decl)| {
+                    Element::new("variable").with("name", &name.text).child(type_of_variable(decl))
+                })
                 .collect();
             let mut element = Element::new("externalVars");
             if constant {

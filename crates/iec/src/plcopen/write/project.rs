@@ -9,7 +9,7 @@ use g7_model::{
 
 use super::codesys::{by_flags, from_outside, is_given, steps_alone};
 use super::control::control;
-use super::declare::{external, in_order, initial, lists, type_of};
+use super::declare::{data_types, external, in_order, initial, lists, type_of};
 use super::sfc::Sfc;
 use crate::Written;
 use crate::nodes::Taken;
@@ -151,7 +151,7 @@ impl<'w> Project<'w> {
             .child(Element::new("contentHeader").with("name", title).child(coordinates()))
             .child(
                 Element::new("types")
-                    .child(Element::new("dataTypes"))
+                    .child(data_types(self.document))
                     .child(Element::new("pous").children(pous)),
             )
             .child(Element::new("instances").child(Element::new("configurations").child(configuration)))

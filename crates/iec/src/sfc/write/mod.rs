@@ -9,7 +9,8 @@ mod chart;
 use std::collections::HashSet;
 
 use g7_model::{
-    Body, Chart, Document, Expr, Function, Item, Nanos, Problem, Span, Type, VarDecl, VarKind, codes, say,
+    Body, Chart, Document, Expr, ExprKind, Function, Item, Nanos, Problem, Span, Type, VarDecl, VarKind,
+    codes, say,
 };
 
 use crate::Written;
@@ -56,6 +57,7 @@ impl<'d> Exporter<'d> {
         if !text.is_empty() {
             text.push('\n');
         }
+        text.insert_str(0, &types(document));
         let programs = self.programs();
         let alone = programs.len() == 1;
         let globals: Vec<&VarDecl> =
@@ -227,10 +229,21 @@ fn words(text: &str) -> HashSet<&str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect()
 }
 
-/// ` := value`.
+/// ` := value`, or ` := [1, 2, 3(0)]`.
 fn initial(init: Option<&Expr>, ty: Type) -> String {
     let types = Known::default();
-    init.map_or(String::new(), |e| format!(" := {}", Writer { types: &types }.value(e, ty)))
+    let value = |e: &Expr| Writer { types: &types }.value(e, ty);
+    match init.map(|e| &e.kind) {
+        None => String::new(),
+        Some(ExprKind::List(values)) => {
+            let one = |(times, e): &(u32, Expr)| match times {
+                1 => value(e),
+                n => format!("{n}({})", value(e)),
+            };
+            format!(" := [{}]", values.iter().map(one).collect::<Vec<_>>().join(", "))
+        }
+        Some(_) => init.map_or(String::new(), |e| format!(" := {}", value(e))),
+    }
 }
 
 /// A comment must not contain the sign that ends it.
@@ -283,7 +296,7 @@ impl Declarations {
             VarKind::Var if decl.retain => "VAR_GLOBAL RETAIN",
             VarKind::Var => "VAR_GLOBAL",
         };
-        self.add(section, line_of(decl, name, shared_type(decl.ty)));
+        self.add(section, line_of(decl, name, shared_type(decl)));
     }
 
     /// The same variable, as a program refers to it.
@@ -292,7 +305,7 @@ impl Declarations {
             VarKind::Const => "VAR_EXTERNAL CONSTANT",
             _ => "VAR_EXTERNAL",
         };
-        self.add(section, format!("{name} : {};", shared_type(decl.ty)));
+        self.add(section, format!("{name} : {};", shared_type(decl)));
     }
 
     fn print(&self, indent: usize) -> String {
@@ -310,12 +323,42 @@ impl Declarations {
 }
 
 /// A type as variables of several programs have it: without the length of a text.
-fn shared_type(ty: Type) -> String {
-    if matches!(ty, Type::String(_)) { "STRING".to_string() } else { type_name(ty) }
+fn shared_type(decl: &VarDecl) -> String {
+    if decl.of.is_none() && matches!(decl.ty, Type::String(_)) { "STRING".to_string() } else { type_of(decl) }
+}
+
+/// The type of a variable; that of an array has a name.
+fn type_of(decl: &VarDecl) -> String {
+    decl.of.as_ref().map_or_else(|| type_name(decl.ty), |of| of.text.to_string())
+}
+
+/// The types of arrays.
+fn types(document: &Document) -> String {
+    let types = Known::default();
+    let bound = |e: &Expr| Writer { types: &types }.plain(e);
+    let mut lines = String::new();
+    for item in &document.items {
+        if let Item::Type(VarDecl { names, array: Some(array), ty, .. }) = item
+            && let Some(name) = names.first()
+        {
+            let bounds: Vec<String> = array
+                .dimensions
+                .iter()
+                .map(|(low, high)| format!("{}..{}", bound(low), bound(high)))
+                .collect();
+            lines.push_str(&format!(
+                "  {} : ARRAY[{}] OF {};\n",
+                name.text,
+                bounds.join(", "),
+                type_name(*ty)
+            ));
+        }
+    }
+    if lines.is_empty() { lines } else { format!("TYPE\n{lines}END_TYPE\n\n") }
 }
 
 fn line(decl: &VarDecl, name: &str) -> String {
-    line_of(decl, name, type_name(decl.ty))
+    line_of(decl, name, type_of(decl))
 }
 
 fn line_of(decl: &VarDecl, name: &str, ty: String) -> String {

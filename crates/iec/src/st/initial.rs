@@ -1,0 +1,191 @@
+//! Initial values, and declarations with them.
+
+use g7_model::codes;
+use g7_model::{Arg, Array, Expr, ExprKind, Name, Path, Place, Problem, Type, VarDecl, VarKind, say};
+
+use super::lex::Kind;
+use super::parse::Parser;
+use super::shape::Shape;
+
+impl Parser<'_> {
+    /// Reads an initial value.
+    pub(super) fn initial(&mut self) -> Initial {
+        let start = self.token().start;
+        if self.at("[") {
+            return self.array_value(start, "[", "]");
+        }
+        let named = self.at("(") && self.ahead(1).kind == Kind::Word && self.ahead_is(2, ":=");
+        if named {
+            return self.struct_value();
+        }
+        Initial::One(self.expr())
+    }
+
+    /// `[1, 2, 3(0)]`.
+    fn array_value(&mut self, start: u32, open: &str, close: &str) -> Initial {
+        let mut list = Vec::new();
+        if !self.enter() {
+            return Initial::One(self.bad(start));
+        }
+        self.expect(open);
+        while !self.at_end() && !self.at(close) {
+            let token = self.token();
+            let times = self.slice(token).parse::<u32>().ok();
+            if let Some(times) = times.filter(|_| token.kind == Kind::Number && self.ahead_is(1, "(")) {
+                self.bump();
+                // The values of a structure have brackets of their own, or these.
+                let fields = self.ahead(1).kind == Kind::Word && self.ahead_is(2, ":=");
+                if fields {
+                    list.push((times, self.struct_value()));
+                } else {
+                    self.bump();
+                    list.push((times, self.initial()));
+                    self.expect(")");
+                }
+            } else {
+                list.push((1, self.initial()));
+            }
+            if !self.eat(",") || list.len() > 10_000 {
+                break;
+            }
+        }
+        self.expect(close);
+        self.leave();
+        Initial::List(list)
+    }
+
+    /// `(a := 1, b := 2)`.
+    fn struct_value(&mut self) -> Initial {
+        let mut fields = Vec::new();
+        if !self.enter() {
+            return Initial::Fields(fields);
+        }
+        self.bump();
+        while let Some(name) = self.name(say!("the name of an element")) {
+            self.expect(":=");
+            fields.push((name, self.initial()));
+            if !self.eat(",") {
+                break;
+            }
+        }
+        self.expect(")");
+        self.leave();
+        Initial::Fields(fields)
+    }
+}
+
+/// An initial value as written.
+#[derive(Clone, Debug)]
+pub(super) enum Initial {
+    One(Expr),
+    /// Values, each with the number of its repetitions.
+    List(Vec<(u32, Initial)>),
+    Fields(Vec<(Name, Initial)>),
+}
+
+impl Initial {
+    /// The value of one variable; None if it is a list.
+    fn one(&self, at: Place) -> Option<Expr> {
+        match self {
+            Initial::One(e) => Some(e.clone()),
+            Initial::List(_) => None,
+            Initial::Fields(fields) => {
+                let field = |(name, value): &(Name, Initial)| {
+                    let value = value.one(at).unwrap_or_else(|| value.list(at));
+                    Arg { name: Some(name.clone()), output: false, value }
+                };
+                let args = fields.iter().map(field).collect();
+                Some(Expr { kind: ExprKind::Call(Path { names: Vec::new() }, args), at })
+            }
+        }
+    }
+
+    /// The values of an array.
+    fn list(&self, at: Place) -> Expr {
+        let mut values = Vec::new();
+        self.elements(1, at, &mut values);
+        Expr { kind: ExprKind::List(values), at }
+    }
+
+    /// The values of rows stand one behind the other.
+    fn elements(&self, times: u32, at: Place, into: &mut Vec<(u32, Expr)>) {
+        let Initial::List(list) = self else {
+            return into.extend(self.one(at).map(|e| (times, e)));
+        };
+        let plain = list.iter().all(|(_, value)| !matches!(value, Initial::List(_)));
+        if let ([(n, value)], true) = (list.as_slice(), plain) {
+            return value.elements(n.saturating_mul(times), at, into);
+        }
+        for _ in 0..times {
+            for (n, value) in list {
+                if into.len() >= MOST_VALUES {
+                    return;
+                }
+                value.elements(*n, at, into);
+            }
+        }
+    }
+}
+
+/// The most values of an array that are written apart.
+const MOST_VALUES: usize = 1 << 16;
+
+/// The type of the elements of an array; of anything else, that itself.
+pub(super) fn element(shape: &Shape) -> &Shape {
+    match shape {
+        Shape::Array(_, element) => element,
+        other => other,
+    }
+}
+
+/// The declaration of a variable or member with its type and value.
+pub(super) fn declared(
+    name: &Name,
+    shape: &Shape,
+    init: Option<&Initial>,
+    at: Place,
+) -> (VarDecl, Option<Problem>) {
+    let dimensions = if let Shape::Array(bounds, _) = shape { Some(bounds) } else { None };
+    let (ty, of, default) = match element(shape) {
+        Shape::Simple(ty, default) => (*ty, None, default.clone()),
+        Shape::Enum(values, default) => {
+            // The first value is 0, which the elements of an array have anyway.
+            let first = values.first().filter(|_| dimensions.is_none()).map(|v| path(&v.text, name.at));
+            (Type::Int, None, default.clone().or(first))
+        }
+        Shape::Struct(of) | Shape::Unknown(of) => (Type::Bool, Some(Box::new(of.clone())), None),
+        Shape::Array(..) => (Type::Bool, None, None),
+    };
+    let array = dimensions.map(|d| Box::new(Array { dimensions: d.clone(), at }));
+    let mut problem = None;
+    let value = match (init, dimensions) {
+        (None, None) => default,
+        (None, Some(bounds)) => default.and_then(|e| all(bounds, &e, at)),
+        (Some(Initial::One(e)), None) if e.kind == ExprKind::Bad => default,
+        (Some(given), None) => given.one(at),
+        (Some(Initial::List(_)), Some(_)) => init.map(|given| given.list(at)),
+        // Tools differ in what one value means for an array.
+        (Some(_), Some(_)) => None,
+    };
+    let bad = matches!(init, Some(Initial::One(e)) if e.kind == ExprKind::Bad);
+    if init.is_some() && value.is_none() && !bad {
+        let what =
+            say!("the initial values of `{}` do not fit its type, or cannot be carried over", name.text);
+        problem = Some(Problem::new(&codes::NOT_CARRIED, at.0, what));
+    }
+    let decl = VarDecl { array, of, init: value, ..VarDecl::new(VarKind::Var, vec![name.clone()], ty, at) };
+    (decl, problem)
+}
+
+/// One value for all elements of an array whose bounds are written as numbers.
+fn all(bounds: &[(Expr, Expr)], e: &Expr, at: Place) -> Option<Expr> {
+    let count = bounds.iter().try_fold(1_u32, |count, (low, high)| {
+        let length = high.kind.whole()?.checked_sub(low.kind.whole()?)?.checked_add(1)?;
+        count.checked_mul(u32::try_from(length).ok()?)
+    })?;
+    Some(Expr { kind: ExprKind::List(vec![(count, e.clone())]), at })
+}
+
+fn path(name: &str, at: Place) -> Expr {
+    Expr { kind: ExprKind::Path(Path { names: vec![Name { text: name.into(), at }] }), at }
+}
