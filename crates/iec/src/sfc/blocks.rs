@@ -13,7 +13,7 @@ use g7_model::{
     say,
 };
 
-use super::unit::{Source, Unit, UnitKind};
+use super::unit::{Part, Source, Unit, UnitKind};
 use crate::report::Report;
 use crate::st::{Section, Variable};
 
@@ -59,6 +59,7 @@ fn used(source: &Source) -> HashSet<String> {
 /// A function block of the document.
 fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mut Report) -> Composed {
     let known = |name: &Name| used.contains(&name.text.to_uppercase());
+    lost_actions(&unit, report);
     let (mut members, mut inouts, mut locals) = (Vec::new(), Vec::new(), Vec::new());
     for Variable { section, mut decl, unknown } in unit.vars {
         if let Some(of) = unknown.filter(|of| !known(of)) {
@@ -125,6 +126,16 @@ pub(super) fn no_type(source: &Source, ty: &Name) -> Said {
         ),
         Some(_) => say!("an instance of `{}`, which is no function block", ty.text),
         None => say!("there is no type `{}`", ty.text),
+    }
+}
+
+/// Reports actions of a unit without steps, because nothing runs them.
+pub(super) fn lost_actions(unit: &Unit, report: &mut Report) {
+    for part in &unit.parts {
+        if let Part::Action { name, .. } = part {
+            let what = say!("the action `{}` of a unit without steps is left out", name.text);
+            report.put(Problem::new(&codes::LEFT_OUT, name.at.0, what));
+        }
     }
 }
 

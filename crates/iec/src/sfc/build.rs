@@ -9,6 +9,7 @@ use g7_model::{
     Step, StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
 };
 
+use super::blocks::{lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
 use crate::report::Report;
 use crate::st::{Section, Variable, settle};
@@ -32,7 +33,7 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
     for (number, unit) in source.units.iter().enumerate() {
         if !alone && builder.is_code(unit) {
             items.extend(builder.variables(unit).into_iter().map(Item::Var));
-            builder.lost_actions(unit);
+            lost_actions(unit, builder.report);
             let list = if builder.is_late(number) { &mut behind } else { &mut before };
             list.push((unit, &unit.body));
             if !unit.behind.is_empty() {
@@ -131,7 +132,7 @@ impl Builder<'_> {
         if self.source.blocks.iter().chain(&self.source.types.structures).any(named) {
             return true;
         }
-        let what = super::blocks::no_type(self.source, ty);
+        let what = no_type(self.source, ty);
         self.report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
         false
     }
@@ -208,7 +209,7 @@ impl Builder<'_> {
             self.report.say(&codes::NOT_CARRIED, &unit.body_at, what);
         }
         if !unit.is_chart() && alone {
-            self.lost_actions(unit);
+            lost_actions(unit, self.report);
             return (vars, Some(Item::Pre(Body::St(block), unit.at.into())));
         }
         let mut items = Vec::new();
@@ -221,7 +222,7 @@ impl Builder<'_> {
         if unit.is_chart() {
             items.extend(step_first(&unit.parts).map(|part| self.part(unit, part)));
         } else {
-            self.lost_actions(unit);
+            lost_actions(unit, self.report);
             items.push(ChartItem::Pre(Body::St(block), unit.at.into()));
             if !unit.behind.is_empty() {
                 let block = Block { locals: Vec::new(), statements: unit.behind.clone(), at: unit.at.into() };
@@ -239,16 +240,6 @@ impl Builder<'_> {
             at: unit.at.into(),
         };
         (of_file, Some(Item::Chart(chart)))
-    }
-
-    /// Reports actions of a unit without steps, because nothing runs them.
-    fn lost_actions(&mut self, unit: &Unit) {
-        for part in &unit.parts {
-            if let Part::Action { name, .. } = part {
-                let what = say!("the action `{}` of a unit without steps is left out", name.text);
-                self.report.put(Problem::new(&codes::LEFT_OUT, name.at.0, what));
-            }
-        }
     }
 
     /// The variables of a unit, with the addresses that a resource gives them.

@@ -163,7 +163,7 @@ pub(super) fn declared(
         (None, Some(bounds)) => default.and_then(|e| all(bounds, &e, at)),
         (Some(Initial::One(e)), None) if e.kind == ExprKind::Bad => default,
         (Some(given), None) => given.one(at),
-        (Some(Initial::List(_)), Some(_)) => init.map(|given| given.list(at)),
+        (Some(given @ Initial::List(_)), Some(bounds)) => Some(filled(given.list(at), bounds, default)),
         // Tools differ in what one value means for an array.
         (Some(_), Some(_)) => None,
     };
@@ -177,13 +177,26 @@ pub(super) fn declared(
     (decl, problem)
 }
 
-/// One value for all elements of an array whose bounds are written as numbers.
-fn all(bounds: &[(Expr, Expr)], e: &Expr, at: Place) -> Option<Expr> {
-    let count = bounds.iter().try_fold(1_u32, |count, (low, high)| {
+/// The number of elements of an array whose bounds are written as numbers.
+fn count(bounds: &[(Expr, Expr)]) -> Option<u32> {
+    bounds.iter().try_fold(1_u32, |count, (low, high)| {
         let length = high.kind.whole()?.checked_sub(low.kind.whole()?)?.checked_add(1)?;
         count.checked_mul(u32::try_from(length).ok()?)
-    })?;
-    Some(Expr { kind: ExprKind::List(vec![(count, e.clone())]), at })
+    })
+}
+
+/// One value for all elements of an array.
+fn all(bounds: &[(Expr, Expr)], e: &Expr, at: Place) -> Option<Expr> {
+    Some(Expr { kind: ExprKind::List(vec![(count(bounds)?, e.clone())]), at })
+}
+
+/// A list with the value of the elements' type for those that it leaves out.
+fn filled(mut list: Expr, bounds: &[(Expr, Expr)], default: Option<Expr>) -> Expr {
+    if let (ExprKind::List(values), Some(default), Some(count)) = (&mut list.kind, default, count(bounds)) {
+        let given = values.iter().fold(0_u32, |sum, (times, _)| sum.saturating_add(*times));
+        values.extend(count.checked_sub(given).filter(|rest| *rest > 0).map(|rest| (rest, default)));
+    }
+    list
 }
 
 fn path(name: &str, at: Place) -> Expr {

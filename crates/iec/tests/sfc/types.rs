@@ -16,6 +16,7 @@ TYPE
     trip : ARRAY[0..1] OF BOOL;
   END_STRUCT;
   Row : ARRAY[1..3] OF INT;
+  Level : INT := 9;
 END_TYPE
 PROGRAM p
   VAR_INPUT go : BOOL; ready : ARRAY[1..2] OF BOOL; END_VAR
@@ -26,6 +27,8 @@ PROGRAM p
     one : motor := (Limit := 4.0);
     table : ARRAY[0..1] OF Row := [[1, 2, 3], [4, 5, 6]];
     bits : ARRAY[-1..1, 0..3] OF WORD;
+    level : ARRAY[0..4] OF Level := [2(1)];
+    full : ARRAY[0..4] OF Level;
     own : STRUCT a : BOOL; b : INT; END_STRUCT;
     i : INT;
   END_VAR
@@ -67,6 +70,8 @@ END_PROGRAM";
          var one : Motor := (Limit := 4.0)
          var table : ARRAY[0..1, 1..3] OF INT := [1, 2, 3, 4, 5, 6]
          var bits : ARRAY[-1..1, 0..3] OF WORD
+         var level : ARRAY[0..4] OF INT := [2(1), 3(9)]
+         var full : ARRAY[0..4] OF INT := [5(9)]
          var own : own_type
          var i : INT
          chart p {
@@ -194,6 +199,11 @@ fn a_type_that_contains_itself_is_refused() {
 fn what_has_no_counterpart_is_told_at_its_place() {
     let program = |vars: &str, body: &str| format!("PROGRAM p VAR {vars} END_VAR {body} END_PROGRAM");
     let block = "FUNCTION_BLOCK b VAR_INPUT x : BOOL; END_VAR x := NOT x; END_FUNCTION_BLOCK ";
+    let action =
+        "FUNCTION_BLOCK b VAR_INPUT x : BOOL; END_VAR ACTION more: x := TRUE; END_ACTION END_FUNCTION_BLOCK ";
+    let (_, problems) = import(&format!("{action}{}", program("f : b;", "f();")));
+    let what = "the action `more` of a unit without steps is left out";
+    assert!(problems.iter().any(|p| &*p.what == what), "{problems:?}");
     let cases: [(String, &str); 6] = [
         (program("m : Missing;", "m.a := 1;"), "there is no type `Missing`"),
         (program("a : ARRAY[] OF INT;", ";"), "expected an expression, found `]`"),
