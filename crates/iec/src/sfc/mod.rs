@@ -17,6 +17,7 @@
 
 mod blocks;
 mod build;
+mod enabled;
 mod instances;
 mod read;
 mod singles;
@@ -88,6 +89,7 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
         report.say(&codes::NOT_JGRAFCHART, &(0..end), what);
         return (Document::default(), report.finish());
     }
+    enabled::expand(&mut source);
     instances::expand(&mut source, &mut report);
     blocks::expand(&mut source, &mut report);
     let document = build::document(source, text.len(), &mut report);

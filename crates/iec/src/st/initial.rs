@@ -149,8 +149,9 @@ pub(super) fn declared(
     let (ty, of, default) = match element(shape) {
         Shape::Simple(ty, default) => (*ty, None, default.clone()),
         Shape::Enum(values, default) => {
-            // The first value is 0, which the elements of an array have anyway.
-            let first = values.first().filter(|_| dimensions.is_none()).map(|v| path(&v.text, name.at));
+            // The elements of an array are 0 anyway.
+            let first = values.first().filter(|(_, number)| dimensions.is_none() || *number != 0);
+            let first = first.map(|(value, _)| path(&value.text, name.at));
             (Type::Int, None, default.clone().or(first))
         }
         Shape::Struct(of) | Shape::Unknown(of) => (Type::Bool, Some(Box::new(of.clone())), None),

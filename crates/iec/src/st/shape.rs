@@ -8,8 +8,8 @@ use g7_model::{Composed, Expr, Name, Type};
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Simple(Type, Option<Expr>),
-    /// The names of its values, numbered from 0, and its initial value.
-    Enum(Vec<Name>, Option<Expr>),
+    /// Its values with their numbers, and its initial value.
+    Enum(Vec<(Name, i128)>, Option<Expr>),
     /// A structure of the file.
     Struct(Name),
     /// The bounds of each dimension, and the type of the elements, which is no array.
@@ -31,8 +31,8 @@ pub(crate) struct Types {
 impl Types {
     /// Adds a type, and its values if it is an enumeration.
     pub(crate) fn add(&mut self, name: &Name, shape: Shape) {
-        if let Shape::Enum(names, _) = &shape {
-            self.values.extend(names.iter().cloned().zip(0..));
+        if let Shape::Enum(values, _) = &shape {
+            self.values.extend(values.iter().cloned());
         }
         self.shapes.insert(name.text.to_ascii_uppercase(), shape);
     }

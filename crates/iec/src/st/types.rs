@@ -114,6 +114,8 @@ impl Parser<'_> {
         let Some(name) = self.name(say!("a type")) else { return Shape::Simple(Type::Bool, None) };
         match elementary(&upper) {
             Some(Type::String(_)) => Shape::Simple(Type::String(self.length()), None),
+            // Values with a type: `INT (Off := 0, Hand := 2)`.
+            Some(Type::Int) if self.at("(") && self.ahead(1).kind == Kind::Word => self.enumeration(),
             Some(ty) => {
                 self.subrange(&at);
                 // The declaration reads the direction of an input: `BOOL R_EDGE`.
@@ -167,27 +169,30 @@ impl Parser<'_> {
         length.unwrap_or(80)
     }
 
+    /// `(Off, Auto := 5, Hand)`: a value without a number has the next one (IEC 61131-3:2013, 6.4.4.4).
     fn enumeration(&mut self) -> Shape {
         self.bump();
-        let mut names = Vec::new();
+        let mut values = Vec::new();
+        let mut number = 0;
         while let Some(name) = self.name(say!("a value of the enumeration")) {
-            if self.at(":=") {
-                let at = self.here();
-                self.say(
-                    &codes::NOT_CARRIED,
-                    &at,
-                    say!("numbers of an enumeration's values are not carried over"),
-                );
-                self.bump();
-                self.expr();
+            if self.eat(":=") {
+                let value = self.expr();
+                match value.kind.whole() {
+                    Some(n) => number = n,
+                    None => {
+                        let what = say!("the number of an enumeration's value is written as a number");
+                        self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, value.at.0, what));
+                    }
+                }
             }
-            names.push(name);
+            values.push((name, number));
+            number = number.saturating_add(1);
             if !self.eat(",") {
                 break;
             }
         }
         self.expect(")");
-        Shape::Enum(names, None)
+        Shape::Enum(values, None)
     }
 
     fn array(&mut self, of: &Name, types: &mut Types) -> Shape {

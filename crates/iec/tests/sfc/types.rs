@@ -255,3 +255,59 @@ fn an_array_of_instances_with_a_chart_is_a_chart_for_each() {
         assert!(text.contains(part), "{part} in {text}");
     }
 }
+
+#[test]
+fn values_of_enumerations_have_their_numbers() {
+    let text = carried(
+        "TYPE
+           Mode : (Off, Auto := 5, Hand) := Hand;
+           Fault : INT (None := 1, Jam := -3);
+         END_TYPE
+         PROGRAM p
+           VAR_INPUT go : BOOL; END_VAR
+           VAR m : Mode; f : fault; all : ARRAY[1..2] OF Fault; END_VAR
+           INITIAL_STEP A: Act(N); END_STEP
+           STEP B: END_STEP
+           TRANSITION FROM A TO B := m = Mode#AUTO; END_TRANSITION
+           TRANSITION FROM B TO A := m = MODE.Off; END_TRANSITION
+           ACTION Act: CASE m OF Off: f := Jam; Mode#Hand: f := NONE; END_CASE; END_ACTION
+         END_PROGRAM",
+    );
+    for part in [
+        "const Off : INT := 0",
+        "const Auto : INT := 5",
+        "const Hand : INT := 6",
+        "const None : INT := 1",
+        "const Jam : INT := -3",
+        "var m : INT := Hand",
+        "var f : INT := None",
+        "var all : ARRAY[1..2] OF INT := [2(None)]",
+        "A -> B when m = Auto",
+        "B -> A when m = Off",
+        "Off:\n        f := Jam",
+        "Hand:\n        f := None",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
+
+#[test]
+fn a_call_runs_while_en_is_true() {
+    let text = carried(
+        "FUNCTION_BLOCK Own VAR_INPUT EN, x : BOOL; END_VAR VAR_OUTPUT q : BOOL; END_VAR q := EN AND x; END_FUNCTION_BLOCK
+         PROGRAM p
+           VAR_INPUT go, x : BOOL; END_VAR
+           VAR t, u : TON; o : Own; ran : BOOL; END_VAR
+           t(EN := go AND NOT x, IN := x, PT := T#1s, ENO => ran);
+           IF go THEN u(IN := x, PT := T#2s, eno => ran); END_IF;
+           o(EN := go, x := x);
+         END_PROGRAM",
+    );
+    for part in [
+        "IF go and not x THEN\n    t(IN := x, PT := 1s)\n    ran := TRUE\n  ELSE\n    ran := FALSE\n  END_IF",
+        "IF TRUE THEN\n      u(IN := x, PT := 2s)\n      ran := TRUE",
+        "o(EN := go, x := x)",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
