@@ -23,7 +23,7 @@ const REFUSED: [(&str, usize, &str); 11] = [
     ("oscat/42_standard.st", 10, "expected `;`"),
     ("sfclang/Delay1_left.sfc", 36, "no step `I1`"),
     ("sfclang/Input1_right.sfc", 21, "no step `Add`"),
-    ("AnnexF/gravel_st.txt", 76, "no input `EN`"),
+    ("AnnexF/gravel_st.txt", 96, "no function `BCD_TO_INT`"),
     ("identifier/identifier_in_sfc.test", 98, "the address of two variables"),
     ("test/first_steps.st", 174, "no program `plc_prg`"),
     ("test/first_steps_semantic_error.st", 174, "no program `plc_prg`"),
