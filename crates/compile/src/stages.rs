@@ -53,7 +53,8 @@ pub fn compile_with(
     queries: &[Expr],
 ) -> (Option<Compiled>, Vec<Problem>) {
     let (typed, mut undone) = declared(doc);
-    // The caller joins the files before. The parser has reported a line without a name.
+    // Callers join the used files before they compile, so a `use` that is still here was not read. The parser has
+    // reported a `use` without a name.
     let unread = doc.uses().filter(|used| !used.name.text.is_empty());
     undone.extend(unread.map(|used| unusable(used, &say!("it was not read"))));
     let (instances, mut wrong) = instantiated(&typed);

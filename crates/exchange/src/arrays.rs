@@ -33,7 +33,7 @@ pub(crate) fn singled(document: &Document, keeps: bool) -> (Cow<'_, Document>, V
     let mut single = Single::of(document, keeps);
     let mut own = document.clone();
     own.items = own.items.into_iter().flat_map(|item| single.item(item)).collect();
-    let copies = single.copies(None);
+    let copies = single.copies();
     if let Some(at) = copies.first().map(|s| s.at.0) {
         let post = Item::Post(Body::St(nodes::block(copies, at)), at.into());
         let place = own.items.iter().position(|i| matches!(i, Item::Post(..))).unwrap_or(own.items.len());
@@ -151,18 +151,19 @@ impl<'d> Single<'d> {
         self.scopes.decl(key)?.array.as_ref().map(|_| key)
     }
 
-    /// The assignments that bring what actions drive into the open arrays of a chart, or of the file.
-    fn copies(&self, chart: Option<usize>) -> Vec<Stmt> {
+    /// The assignments that copy the single variables of open arrays into these.
+    fn copies(&self) -> Vec<Stmt> {
         let mut list = Vec::new();
-        let mut of_chart: Vec<_> = self.arrays.iter().filter(|(key, _)| key.0 == chart).collect();
-        of_chart.sort_by_key(|(key, _)| key.1);
-        for (key, elements) in of_chart.into_iter().filter(|(key, _)| self.open.contains(*key)) {
+        let mut open: Vec<_> = self.arrays.iter().filter(|(key, _)| self.open.contains(*key)).collect();
+        open.sort_by_key(|(key, _)| **key);
+        for (key, elements) in open {
             let at = self.scopes.decl(*key).map_or(Span::default(), |d| d.at.0);
+            let chart = key.0.and_then(|c| self.scopes.chart(c)).map(|c| &*c.name.text);
+            let path = |name| nodes::path(&chart.into_iter().chain([name]).collect::<Vec<_>>(), at);
             for (index, single) in elements {
                 let index = index.iter().map(|n| nodes::int(*n, at)).collect();
-                let path = Box::new(nodes::path(&[key.1], at));
-                let element = Expr { kind: ExprKind::Element(path, index, None), at: at.into() };
-                list.push(nodes::assign(element, nodes::name(&[single], at), at));
+                let element = nodes::expr(ExprKind::Element(Box::new(path(key.1)), index, None), at);
+                list.push(nodes::assign(element, nodes::expr(ExprKind::Path(path(single)), at), at));
             }
         }
         list
@@ -203,10 +204,6 @@ impl<'d> Single<'d> {
                     item => vec![item],
                 });
                 chart.items = items.collect();
-                let copies = self.copies(self.chart);
-                if let Some(at) = copies.first().map(|s| s.at.0) {
-                    chart.items.push(ChartItem::Post(Body::St(nodes::block(copies, at)), at.into()));
-                }
                 one.items.push(Item::Chart(chart));
             }
             item => one.items.push(item),
@@ -240,10 +237,12 @@ impl<'d> Single<'d> {
         let mut all = Vec::new();
         let open = self.open.contains(&key);
         if open {
-            let values: Vec<(u32, Expr)> = (0..indexes.len()).map_while(value).map(|e| (1, e)).collect();
-            let list = Expr { kind: ExprKind::List(values), at: v.at };
-            let own = v.init.clone().filter(|_| v.usual.is_none());
-            let init = own.or_else(|| v.usual.is_some().then_some(list));
+            let init = if v.usual.is_some() {
+                let values = (0..indexes.len()).filter_map(value).map(|e| (1, e)).collect();
+                Some(nodes::expr(ExprKind::List(values), v.at.0))
+            } else {
+                v.init.clone()
+            };
             all.push(VarDecl { names: vec![name.clone()], of: None, usual: None, init, ..v.clone() });
         }
         for (place, indexes) in indexes.iter().enumerate() {
@@ -370,8 +369,7 @@ fn retarget(item: &mut Item) {
 
 /// `a_1_m2` for `a[1, -2]`, or a name like it that is not taken.
 fn free(array: &str, indexes: &[i128], taken: &mut HashSet<String>) -> Box<str> {
-    let words: Vec<String> =
-        indexes.iter().map(|n| format!("{}{}", if *n < 0 { "_m" } else { "_" }, n.unsigned_abs())).collect();
+    let words: Vec<String> = indexes.iter().map(|n| format!("_{}", g7_iec::words::number(*n))).collect();
     // The indexes of a member stand within its name: `m_1.speed` for `m[].speed`.
     let (mut name, within) = filled(array, &words);
     if within > 0 {

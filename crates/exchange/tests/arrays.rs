@@ -86,6 +86,17 @@ fn elements_that_actions_drive_are_copied_into_an_open_array() {
 }
 
 #[test]
+fn the_body_behind_a_chart_sees_the_copies_of_its_array() {
+    let (text, errors) = sfc("profile iec61131\ninput k : INT\noutput one : BOOL\n\
+         chart G {\n  var m : ARRAY[1..2] OF BOOL\n  initial step 0 { N m[2] }\n  step 1\n  0 -> 1 when k = 1\n  1 -> 0 when k = 2\n  \
+         post { one := m[k] }\n}\npost { one := one or G.m[k] }\n");
+    assert_eq!(errors, Vec::<&str>::new());
+    let at = |line: &str| text.find(line).unwrap_or_else(|| panic!("{line} is missing in\n{text}"));
+    assert!(at("m[2] := m_2;") < at("one := one OR m[k];"));
+    assert!(at("m[2] := m_2;") < at("one := m[k];"));
+}
+
+#[test]
 fn names_that_are_taken_stay() {
     let (text, errors) = sfc(
         "input x_1 : BOOL\nvar x : ARRAY[1..1] OF BOOL\nchart G {\n  initial step 0 { N x[1] }\n  step 1\n  \

@@ -123,8 +123,9 @@ pub(crate) fn deliver(output: Option<&Path>, bytes: &[u8]) -> Result<(), Failure
     Ok(())
 }
 
-/// The chart to run. For a file, that file. For a folder, the first of these that is there: the chart that its project
-/// file names, `chart.g7`, its only .g7 file, the only `chart.g7` or .g7 file in the folders below.
+/// The file to run. A file is taken as it is. In a folder it is the first of these that exists:
+/// the chart that the project file names; `chart.g7`; the only .g7 file; in the folders below, the only `chart.g7`, or the
+/// only .g7 file.
 pub(crate) fn one(path: &Path) -> Result<PathBuf, Failure> {
     let folder = match fs::metadata(path) {
         _ if path == Path::new("-") => return Ok(path.to_path_buf()),

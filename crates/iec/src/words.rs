@@ -79,6 +79,11 @@ pub fn identifier(text: &str) -> String {
     }
 }
 
+/// A number as a part of an identifier: `m2` for -2.
+pub fn number(n: i128) -> String {
+    format!("{}{}", if n < 0 { "m" } else { "" }, n.unsigned_abs())
+}
+
 /// The usual spelling of letters outside ASCII.
 fn fold(c: char) -> &'static str {
     match c {

@@ -106,7 +106,7 @@ impl<'d> Linker<'d> {
         self.problems.push(problem.help(help));
     }
 
-    /// Reports the settings of a used file that differ from those of the head.
+    /// Reports each setting (profile, scan time, target) of a used file that is not that of the head, the first file.
     fn settings(&mut self, head: &Document, file: &Document) {
         let target = |d: &Document| {
             d.items.iter().find_map(|i| if let Item::Target(plc, at) = i { Some((*plc, at.0)) } else { None })

@@ -142,7 +142,8 @@ impl Page {
         }
     }
 
-    /// Lends every open file the texts that it uses: of open files the present ones, of others those of the disk.
+    /// Gives each open file the texts of the files that it uses. Of a file that is open, this is the edited text, otherwise
+    /// the text on the disk.
     fn lend_all(&mut self) {
         // A file that was lent may use another one.
         for _ in 0..MOST {

@@ -78,7 +78,7 @@ fn a_text_is_opened_with_the_files_that_it_uses() {
     page.ok(json!({ "do": "open", "file": "cell/a.g7", "text": MAIN }));
     let uses = page.ok(json!({ "do": "used", "file": "cell/a.g7" }));
     assert_eq!(uses, json!([{ "file": "lib/axis.g7", "text": AXIS }]), "by its path from the folder");
-    // Under any name: a proof or a comparison needs no more.
+    // The name does not matter: proofs and comparisons open the text under a name of their own.
     let look = page.ok(json!({ "do": "open", "file": "0/asked.g7", "text": MAIN, "uses": uses }));
     assert_eq!((&look["wants"], &look["problems"]), (&json!([]), &json!([])));
     let report = page.ok(json!({ "do": "prove", "file": "0/asked.g7", "states": 1000, "mib": 16 }));

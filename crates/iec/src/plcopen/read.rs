@@ -20,7 +20,8 @@ pub(super) struct Project<'a> {
     pub(super) runs: Vec<Run<'a>>,
     /// The shortest interval of all tasks.
     pub(super) cycle: Option<Nanos>,
-    /// The types of arrays, and others that are plain ones with a name: what they stand for, by their names in upper case.
+    /// The named types that are arrays or stand for another type: the element that describes each, by its name in upper
+    /// case.
     pub(super) types: HashMap<String, Xml<'a>>,
     /// The start tag of the project.
     pub(super) at: std::ops::Range<usize>,

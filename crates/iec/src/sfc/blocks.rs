@@ -1,10 +1,10 @@
-//! The file's own function blocks without a chart, as those of the document.
+//! Makes function blocks of the document from the function blocks of the file that have no chart.
 //!
 //! ```text
 //! read (Source) -> instances -> here -> build
 //! ```
 //!
-//! A function block that nothing uses stays a unit; the builder tells of it.
+//! Function blocks without an instance stay in the list of units; `build` reports them.
 
 use std::collections::HashSet;
 

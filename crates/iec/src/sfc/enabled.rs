@@ -7,31 +7,25 @@
 //!
 //! A function block that declares a variable `EN` has that as any other input.
 
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Visitor};
-use g7_model::{Arg, Expr, Stmt, StmtKind, VarDecl};
+use g7_model::{Arg, Expr, Path, Stmt, StmtKind, VarDecl};
 
 use super::unit::{Part, Source};
 use crate::nodes;
 
+/// The types of variables that are of a type of the file; all names in upper case.
+type Types = HashMap<String, String>;
+
 /// Rewrites the calls of all units.
 pub(super) fn expand(source: &mut Source) {
-    let named = |decl: &VarDecl, name: &str| decl.names.iter().any(|n| n.text.eq_ignore_ascii_case(name));
-    let own: HashSet<String> = source
-        .units
-        .iter()
-        .filter(|u| u.vars.iter().any(|v| named(&v.decl, "EN")))
-        .map(|u| u.name.text.to_uppercase())
-        .collect();
-    let is_own = |decl: &VarDecl| decl.of.as_ref().is_some_and(|of| own.contains(&of.text.to_uppercase()));
-    let globals: Vec<&VarDecl> = source.globals.iter().map(|v| &v.decl).filter(|d| is_own(d)).collect();
-    let names = |decls: &mut dyn Iterator<Item = &VarDecl>| -> HashSet<String> {
-        decls.flat_map(|d| &d.names).map(|n| n.text.to_uppercase()).collect()
-    };
+    let file = File::of(source);
+    let globals = types(source.globals.iter().map(|v| &v.decl));
     for unit in &mut source.units {
-        let locals = unit.vars.iter().map(|v| &v.decl).filter(|d| is_own(d));
-        let mut enabled = Enabled { own: names(&mut globals.iter().copied().chain(locals)) };
+        let mut variables = globals.clone();
+        variables.extend(types(unit.vars.iter().map(|v| &v.decl)));
+        let mut enabled = Enabled { file: &file, variables };
         visit_mut::stmts(&mut unit.body, &mut enabled);
         for part in &mut unit.parts {
             if let Part::Action { body, .. } = part {
@@ -41,9 +35,51 @@ pub(super) fn expand(source: &mut Source) {
     }
 }
 
-struct Enabled {
-    /// The instances in upper case whose type declares `EN`.
+fn types<'v>(variables: impl Iterator<Item = &'v VarDecl>) -> Types {
+    let of =
+        |v: &'v VarDecl| Some((v.names.first()?.text.to_uppercase(), v.of.as_ref()?.text.to_uppercase()));
+    variables.filter_map(of).collect()
+}
+
+/// The function blocks and structures of a file.
+struct File {
+    /// The types of their members, by the name of the function block or structure.
+    members: HashMap<String, Types>,
+    /// The function blocks that declare `EN`.
     own: HashSet<String>,
+}
+
+impl File {
+    fn of(source: &Source) -> File {
+        let declares = |v: &VarDecl| v.names.iter().any(|n| n.text.eq_ignore_ascii_case("EN"));
+        let mut file = File { members: HashMap::new(), own: HashSet::new() };
+        for unit in &source.units {
+            let name = unit.name.text.to_uppercase();
+            if unit.vars.iter().any(|v| declares(&v.decl)) {
+                file.own.insert(name.clone());
+            }
+            file.members.insert(name, types(unit.vars.iter().map(|v| &v.decl)));
+        }
+        for structure in &source.types.structures {
+            file.members.insert(structure.name.text.to_uppercase(), types(structure.members.iter()));
+        }
+        file
+    }
+}
+
+struct Enabled<'f> {
+    file: &'f File,
+    variables: Types,
+}
+
+impl Enabled<'_> {
+    /// True if the function block that a path names declares `EN`.
+    fn declares(&self, path: &Path) -> bool {
+        let mut names = path.names.iter().map(|n| n.text.split('[').next().unwrap_or("").to_uppercase());
+        let first = names.next().and_then(|n| self.variables.get(&n));
+        let of = names.fold(first, |of, member| self.file.members.get(of?)?.get(&member));
+        of.is_some_and(|of| self.file.own.contains(of))
+    }
 }
 
 /// Takes the value of a parameter out of the arguments.
@@ -53,11 +89,10 @@ fn taken(args: &mut Vec<Arg>, name: &str, output: bool) -> Option<Expr> {
     Some(args.remove(place).value)
 }
 
-impl Visitor for Enabled {
+impl Visitor for Enabled<'_> {
     fn stmt(&mut self, stmt: &mut Stmt) {
         let StmtKind::Call(path, args) = &mut stmt.kind else { return };
-        let first = path.names.first().map_or("", |n| n.text.split('[').next().unwrap_or(""));
-        if self.own.contains(&first.to_uppercase()) {
+        if self.declares(path) {
             return;
         }
         let (en, eno) = (taken(args, "EN", false), taken(args, "ENO", true));
@@ -65,9 +100,9 @@ impl Visitor for Enabled {
             return;
         }
         let at = stmt.at.0;
-        let told = |on| eno.iter().map(|e| nodes::assign(e.clone(), nodes::boolean(on, at), at)).collect();
-        let mut run = vec![stmt.clone()];
-        run.extend::<Vec<Stmt>>(told(true));
-        *stmt = nodes::when(en.unwrap_or_else(|| nodes::boolean(true, at)), run, told(false), at);
+        let tell = |on| eno.iter().map(|e| nodes::assign(e.clone(), nodes::boolean(on, at), at)).collect();
+        let not: Vec<Stmt> = tell(false);
+        let run = std::iter::once(stmt.clone()).chain(tell(true)).collect();
+        *stmt = nodes::when(en.unwrap_or_else(|| nodes::boolean(true, at)), run, not, at);
     }
 }

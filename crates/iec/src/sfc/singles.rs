@@ -1,8 +1,6 @@
-//! Puts single instances in the place of arrays of function blocks with a chart: the chart of each is one of its own.
+//! Replaces each array of function blocks with a chart by single instances, each of which becomes a chart.
 //!
-//! ```text
-//! read (Source) -> instances -> here -> instances
-//! ```
+//! `instances` calls this file before it makes the charts, and then sees no such array.
 
 use std::collections::{HashMap, HashSet};
 
@@ -12,6 +10,7 @@ use g7_model::{Expr, ExprKind, Name, Path, Problem, Span, codes, say};
 use super::unit::{Source, Unit, UnitKind};
 use crate::report::Report;
 use crate::st::Variable;
+use crate::words::number;
 
 /// The most elements of one array.
 const MOST: i128 = 10_000;
@@ -62,7 +61,7 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
 
 /// The name of a single instance.
 fn element(array: &str, index: i128) -> String {
-    format!("{array}_{}{}", if index < 0 { "m" } else { "" }, index.unsigned_abs())
+    format!("{array}_{}", number(index))
 }
 
 /// Gives elements of arrays of instances the names of single instances.

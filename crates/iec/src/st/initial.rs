@@ -149,7 +149,7 @@ pub(super) fn declared(
     let (ty, of, default) = match element(shape) {
         Shape::Simple(ty, default) => (*ty, None, default.clone()),
         Shape::Enum(values, default) => {
-            // The elements of an array are 0 anyway.
+            // An array without a list starts with zeros, so a first value of 0 needs no list.
             let first = values.first().filter(|(_, number)| dimensions.is_none() || *number != 0);
             let first = first.map(|(value, _)| path(&value.text, name.at));
             (Type::Int, None, default.clone().or(first))

@@ -47,10 +47,7 @@ pub use types::elementary;
 
 /// Reads statements of Structured Text; the text must end behind them.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
-    let mut parser = Parser::new(text, place, report);
-    let statements = parser.statements();
-    parser.expect_end();
-    statements
+    Parser::new(text, place, report).body()
 }
 
 /// Reads one expression; `;` may follow.
@@ -67,10 +64,7 @@ pub mod single {
 
     /// See [`super::statements`].
     pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
-        let mut parser = Parser::single(text, place, report);
-        let statements = parser.statements();
-        parser.expect_end();
-        statements
+        Parser::single(text, place, report).body()
     }
 
     /// See [`super::expression`].

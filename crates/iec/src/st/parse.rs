@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use g7_model::codes::{self, Code};
-use g7_model::{Expr, ExprKind, Name, Said, Span, say};
+use g7_model::{Expr, ExprKind, Name, Said, Span, Stmt, say};
 
 use super::lex::{Kind, Token, tokens};
 use crate::report::Report;
@@ -38,6 +38,13 @@ impl<'a> Parser<'a> {
     /// A parser for a format whose elements of arrays become single variables.
     pub(super) fn single(text: &'a str, place: Places<'a>, report: &'a mut Report) -> Parser<'a> {
         Parser { single: true, ..Parser::new(text, place, report) }
+    }
+
+    /// Reads the whole text as statements.
+    pub(super) fn body(mut self) -> Vec<Stmt> {
+        let statements = self.statements();
+        self.expect_end();
+        statements
     }
 
     /// Reads the whole text as one expression; `;` may follow.

@@ -8,6 +8,7 @@ use std::collections::HashMap;
 use g7_model::{ChartItem, Document, Expr, Item, Name, VarDecl, VarKind};
 
 use super::identifiers::Names;
+use crate::words::number;
 
 /// Puts an [`Item::Type`] for each type of array before all variables, and its name into [`VarDecl::of`].
 pub(super) fn named(document: &mut Document, names: &mut Names) {
@@ -41,11 +42,7 @@ pub(super) fn named(document: &mut Document, names: &mut Names) {
 
 /// `INT_1_3` for `ARRAY[1..3] OF INT`; None for a variable that is no array.
 fn wish(decl: &VarDecl) -> Option<String> {
-    let bound = |e: &Expr| match e.kind.whole() {
-        Some(n) if n < 0 => format!("m{}", n.unsigned_abs()),
-        Some(n) => n.to_string(),
-        None => "n".to_owned(),
-    };
+    let bound = |e: &Expr| e.kind.whole().map_or_else(|| "n".to_owned(), number);
     let bounds: Vec<String> = decl.array.as_ref()?.bounds().map(bound).collect();
     Some(format!("{}_{}", decl.ty, bounds.join("_")))
 }

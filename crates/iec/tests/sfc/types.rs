@@ -295,9 +295,11 @@ fn values_of_enumerations_have_their_numbers() {
 fn a_call_runs_while_en_is_true() {
     let text = carried(
         "FUNCTION_BLOCK Own VAR_INPUT EN, x : BOOL; END_VAR VAR_OUTPUT q : BOOL; END_VAR q := EN AND x; END_FUNCTION_BLOCK
+         FUNCTION_BLOCK Pair VAR one : ARRAY[1..2] OF Own; t : TON; END_VAR one[1](EN := TRUE); END_FUNCTION_BLOCK
          PROGRAM p
            VAR_INPUT go, x : BOOL; END_VAR
-           VAR t, u : TON; o : Own; ran : BOOL; END_VAR
+           VAR t, u : TON; o : Own; two : Pair; ran : BOOL; END_VAR
+           two.ONE[2](EN := go); two.t(EN := go); two();
            t(EN := go AND NOT x, IN := x, PT := T#1s, ENO => ran);
            IF go THEN u(IN := x, PT := T#2s, eno => ran); END_IF;
            o(EN := go, x := x);
@@ -307,6 +309,9 @@ fn a_call_runs_while_en_is_true() {
         "IF go and not x THEN\n    t(IN := x, PT := 1s)\n    ran := TRUE\n  ELSE\n    ran := FALSE\n  END_IF",
         "IF TRUE THEN\n      u(IN := x, PT := 2s)\n      ran := TRUE",
         "o(EN := go, x := x)",
+        "one[1](EN := TRUE)",
+        "two.one[2](EN := go)",
+        "IF go THEN\n    two.t()\n  END_IF",
     ] {
         assert!(text.contains(part), "{part} in {text}");
     }

@@ -231,19 +231,15 @@ fn words(text: &str) -> HashSet<&str> {
 
 /// ` := value`, or ` := [1, 2, 3(0)]`.
 fn initial(init: Option<&Expr>, ty: Type) -> String {
+    let Some(e) = init else { return String::new() };
     let types = Known::default();
     let value = |e: &Expr| Writer { types: &types }.value(e, ty);
-    match init.map(|e| &e.kind) {
-        None => String::new(),
-        Some(ExprKind::List(values)) => {
-            let one = |(times, e): &(u32, Expr)| match times {
-                1 => value(e),
-                n => format!("{n}({})", value(e)),
-            };
-            format!(" := [{}]", values.iter().map(one).collect::<Vec<_>>().join(", "))
-        }
-        Some(_) => init.map_or(String::new(), |e| format!(" := {}", value(e))),
-    }
+    let ExprKind::List(values) = &e.kind else { return format!(" := {}", value(e)) };
+    let one = |(times, e): &(u32, Expr)| match times {
+        1 => value(e),
+        n => format!("{n}({})", value(e)),
+    };
+    format!(" := [{}]", values.iter().map(one).collect::<Vec<_>>().join(", "))
 }
 
 /// A comment must not contain the sign that ends it.
