@@ -6,6 +6,7 @@ use g7_model::{Nanos, codes, say};
 use roxmltree::Document;
 
 use super::tree::{self, Xml, head, kid, kids, tag, text, word};
+use crate::nodes::line;
 use crate::report::Report;
 use crate::xml::attr::Text;
 
@@ -120,7 +121,13 @@ impl<'a> Reader<'_, 'a> {
                     self.project.globals.push(section);
                 }
                 "dataType" | "dataTypeDecl" if let Some((name, base)) = plain_type(child) => {
-                    self.project.types.insert(name.to_uppercase(), base);
+                    if self.project.types.insert(name.to_uppercase(), base).is_some() {
+                        self.report.say(
+                            &codes::TWICE,
+                            &head(child),
+                            say!("`{}` is declared twice", line(name)),
+                        );
+                    }
                 }
                 "dataType" | "dataTypeDecl" => {
                     let what = say!("a type of one's own; variables of it are left out");
@@ -284,7 +291,7 @@ pub(super) fn duration(word: &str) -> Option<Nanos> {
         .map(Nanos::new)
 }
 
-/// The name and the meaning of a type that is an array or has a plain one behind it.
+/// The name of a type that is an array or stands for another type, and the element that describes it.
 fn plain_type(node: Xml<'_>) -> Option<(&str, Xml<'_>)> {
     let base = kid(node, "baseType")?;
     let plain = |n: Xml| !matches!(tag(n).as_str(), "struct" | "enum" | "pointer");

@@ -8,18 +8,13 @@ use g7_model::{Expr, ExprKind, FbKind, Literal, Span, Type, UnaryOp, say};
 use super::read::{duration, type_of};
 use super::tree::{Xml, head, kid, kids, tag, word};
 use crate::report::Report;
-use crate::st;
+use crate::st::{self, MOST_DIMENSIONS};
 use crate::xml::attr;
 
 /// The most names that stand for each other.
 const MOST_NAMES: usize = 64;
-/// The most dimensions of an array.
-const MOST_DIMENSIONS: usize = 16;
 /// The longest string that a variable may hold.
 const MOST_TEXT: u16 = 1024;
-
-/// The most values of an array that are written apart.
-const MOST_VALUES: usize = 1 << 16;
 
 /// The meaning of a declared type.
 pub(super) enum Known {
@@ -145,12 +140,9 @@ fn elements(list: Xml, ty: Type, depth: usize, report: &mut Report, values: &mut
     for value in kids(list).filter(|n| tag(*n) == "value") {
         let times = word(value, "repetitionValue").and_then(|n| n.parse::<u32>().ok()).unwrap_or(1);
         if let Some(row) = kid(value, "arrayValue").filter(|_| depth < MOST_DIMENSIONS) {
-            for _ in 0..times {
-                if values.len() > MOST_VALUES {
-                    return;
-                }
-                elements(row, ty, depth + 1, report, values);
-            }
+            let mut inner = Vec::new();
+            elements(row, ty, depth + 1, report, &mut inner);
+            st::repeat(&inner, times, values);
         } else if let Some(one) = kid(value, "simpleValue").and_then(|simple| one(simple, ty, report)) {
             values.push((times, one));
         } else {

@@ -112,23 +112,27 @@ impl Initial {
         let Initial::List(list) = self else {
             return into.extend(self.one(at).map(|e| (times, e)));
         };
-        let plain = list.iter().all(|(_, value)| !matches!(value, Initial::List(_)));
-        if let ([(n, value)], true) = (list.as_slice(), plain) {
-            return value.elements(n.saturating_mul(times), at, into);
-        }
-        for _ in 0..times {
-            for (n, value) in list {
-                if into.len() >= MOST_VALUES {
-                    return;
-                }
-                value.elements(*n, at, into);
-            }
-        }
+        let mut row = Vec::new();
+        list.iter().for_each(|(n, value)| value.elements(*n, at, &mut row));
+        repeat(&row, times, into);
     }
 }
 
-/// The most values of an array that are written apart.
+/// The most values of an array that are listed: more than an array can have elements.
 const MOST_VALUES: usize = 1 << 16;
+
+/// Appends the values of a row as often as it is repeated. A list that is longer than any array ends.
+pub(crate) fn repeat(row: &[(u32, Expr)], times: u32, into: &mut Vec<(u32, Expr)>) {
+    if let [(n, value)] = row {
+        return into.push((n.saturating_mul(times), value.clone()));
+    }
+    for _ in 0..times {
+        if row.is_empty() || into.len() > MOST_VALUES {
+            return;
+        }
+        into.extend_from_slice(row);
+    }
+}
 
 /// The type of the elements of an array; of anything else, that itself.
 pub(super) fn element(shape: &Shape) -> &Shape {

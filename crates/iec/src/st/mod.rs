@@ -37,12 +37,14 @@ use crate::report::Report;
 pub type Spelling<'a> = &'a dyn Fn(&Expr) -> String;
 
 pub(crate) use decl::{Section, Variable};
+pub(crate) use initial::repeat;
 pub(crate) use lex::Kind;
 pub(crate) use parse::Parser;
 pub use parse::Places;
 pub use print::{Types as Known, Writer};
 pub use settle::settle;
 pub(crate) use shape::Types;
+pub(crate) use types::MOST_DIMENSIONS;
 pub use types::elementary;
 
 /// Reads statements of Structured Text; the text must end behind them.

@@ -11,7 +11,7 @@ use super::parse::Parser;
 use super::shape::{Shape, Types};
 
 /// The most dimensions of an array.
-const MOST_DIMENSIONS: usize = 16;
+pub(crate) const MOST_DIMENSIONS: usize = 16;
 
 /// An elementary type or standard function block by its name in capitals.
 pub fn elementary(upper: &str) -> Option<Type> {
@@ -40,20 +40,17 @@ impl Parser<'_> {
                 self.bump();
             }
             self.expect(":");
-            if self.at_word("STRUCT") {
-                self.structure(&name, types);
-                self.eat(";");
-                continue;
-            }
-            let mut shape = self.shape(&name, types);
+            let mut shape =
+                if self.at_word("STRUCT") { self.structure(&name, types) } else { self.shape(&name, types) };
+            let start = self.token().start;
             if self.eat(":=") {
-                let init = self.expr();
-                shape = match shape {
-                    Shape::Simple(ty, _) => Shape::Simple(ty, Some(init)),
-                    Shape::Enum(names, _) => Shape::Enum(names, Some(init)),
-                    other => {
-                        let at = init.at.0;
-                        let what = say!("initial values of an array's type are not carried over");
+                shape = match (shape, self.initial()) {
+                    (Shape::Simple(ty, _), Initial::One(init)) => Shape::Simple(ty, Some(init)),
+                    (Shape::Enum(values, _), Initial::One(init)) => Shape::Enum(values, Some(init)),
+                    (other, _) => {
+                        let what =
+                            say!("initial values of a structure's or array's type are not carried over");
+                        let at = self.since(start);
                         self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
                         other
                     }

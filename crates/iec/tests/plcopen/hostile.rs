@@ -115,6 +115,22 @@ fn values_that_multiply_are_bounded() {
 }
 
 #[test]
+fn rows_that_multiply_are_bounded() {
+    for row in
+        ["", "<value><simpleValue value='1'/></value>", "<value/><value><simpleValue value='1'/></value>"]
+    {
+        let open = "<arrayValue><value repetitionValue='4000000000'>".repeat(12);
+        let close = "</value></arrayValue>".repeat(12);
+        let value = format!("{open}<arrayValue>{row}{row}</arrayValue>{close}");
+        let array = "<array><dimension lower='1' upper='2'/><baseType><INT/></baseType></array>";
+        codes_of(&format!(
+            "<pou name='P' pouType='program'><interface><localVars><variable name='a'><type>{array}</type>\
+             <initialValue>{value}</initialValue></variable></localVars></interface><body><ST/></body></pou>"
+        ));
+    }
+}
+
+#[test]
 fn blocks_that_multiply_are_bounded() {
     // Each block has two instances of the next, and calls both.
     let block = |n: usize| {

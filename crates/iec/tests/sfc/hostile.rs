@@ -30,6 +30,13 @@ fn long_chains_and_lists() {
     quickly(&format!("PROGRAM p LD a\n{} END_PROGRAM", "AND a\n".repeat(50_000)));
     quickly(&format!("PROGRAM p {} END_PROGRAM", "LD a\nJMPC x\n".repeat(20_000)));
     quickly("PROGRAM p VAR a : ARRAY [1..1000, 1..1000, 1..1000] OF INT; END_VAR END_PROGRAM");
+    for row in ["", "1", "1, 2"] {
+        let rows = "[4000000000(".repeat(20);
+        let ends = ")]".repeat(20);
+        quickly(&format!(
+            "PROGRAM p VAR a : ARRAY [1..2] OF INT := {rows}[{row}]{ends}; END_VAR END_PROGRAM"
+        ));
+    }
 }
 
 proptest! {

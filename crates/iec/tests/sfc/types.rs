@@ -204,7 +204,14 @@ fn what_has_no_counterpart_is_told_at_its_place() {
     let (_, problems) = import(&format!("{action}{}", program("f : b;", "f();")));
     let what = "the action `more` of a unit without steps is left out";
     assert!(problems.iter().any(|p| &*p.what == what), "{problems:?}");
-    let cases: [(String, &str); 6] = [
+    let cases: [(String, &str); 7] = [
+        (
+            format!(
+                "TYPE s : STRUCT x : INT; END_STRUCT := (x := 2); m : (Off, On); END_TYPE {}",
+                program("v : s; w : m := On;", "v.x := w;")
+            ),
+            "initial values of a structure's or array's type are not carried over",
+        ),
         (program("m : Missing;", "m.a := 1;"), "there is no type `Missing`"),
         (program("a : ARRAY[] OF INT;", ";"), "expected an expression, found `]`"),
         (
