@@ -175,6 +175,7 @@ module.exports = grammar({
         field("kind", choice(kw("chart"), kw("macrochart"), kw("task"))),
         field("name", $._name),
         optional($.parameters),
+        optional(seq(kw("of"), field("block", $._name))),
         optional($.comment),
         optional(seq(kw("every"), $.duration)),
         field("body", $.chart_body),
@@ -192,8 +193,9 @@ module.exports = grammar({
           optional($.comment),
         ),
       ),
-    // The name of a chart where it is used: that of an instance has an index.
-    _chart_name: ($) => seq($._name, optional(seq(token.immediate("["), $._expression, "]"))),
+    // The name of a chart where it is used: that of an instance has an index, or the path of its function block.
+    _chart_name: ($) => seq($._name, optional($._index), repeat(seq($.member, optional($._index)))),
+    _index: ($) => seq(token.immediate("["), $._expression, "]"),
     chart_body: ($) => seq("{", items($._chart_item), "}"),
     _chart_item: ($) =>
       choice($.variable, $.step, $.transition, $.pre, $.post, $.named_action, $.section),

@@ -74,6 +74,7 @@ const SCENES: Record<string, Scene> = {
   'modelling/conflict-priority.g7': { acts: [push('p1'), push('p2'), 200] },
   'modelling/machine.g7': { acts: [push('m'), 6000] },
   'modelling/or-into-and.g7': { acts: [push('p1'), 500] },
+  'structure/clamps.g7': { acts: [turn('start'), 300, turn('closed[1]'), 700], chart: 'Move' },
   'structure/enclosing.g7': { acts: [turn('on'), 7000], chart: 'Pumps' },
   'structure/gemma.g7': { acts: [turn('auto'), 2000, push('start'), 800], chart: 'Modes' },
   'structure/drives.g7': { acts: [push('start'), 200, turn('contactor[3]'), 400, turn('contactor[2]'), 900] },

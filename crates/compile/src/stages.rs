@@ -98,10 +98,10 @@ fn asked<'q>(
     (asked, problems)
 }
 
-/// A problem of a chart with parameters is told once, not for each instance; so is one of a function block.
+/// A problem of a chart with several instances is told once, not for each of them; so is one of a function block.
 fn once(doc: &Document, mut problems: Vec<Problem>) -> Vec<Problem> {
     let several = |i: &Item| match i {
-        Item::Chart(c) => !c.params.is_empty(),
+        Item::Chart(c) => !c.params.is_empty() || c.block.is_some(),
         Item::Composed(_) => true,
         _ => false,
     };
@@ -166,7 +166,7 @@ fn compile_charts(
 /// True for a document that runs nothing, but has what a file that uses it can run: there it is used.
 pub fn is_part(written: &Document) -> bool {
     let runs = |i: &Item| match i {
-        Item::Chart(c) => c.params.is_empty(),
+        Item::Chart(c) => c.params.is_empty() && c.block.is_none(),
         Item::Instance(_) | Item::Pre(..) | Item::Post(..) | Item::Plant(_) | Item::Test(_) => true,
         _ => false,
     };

@@ -114,8 +114,11 @@ fn title(nesting: &Nesting<'_>, drawing: &Drawing) -> Picture {
     p
 }
 
-/// `(i, speed)`, the names of the parameters.
+/// `(i, speed)`, the names of the parameters; ` of Gripper`, the function block of the chart.
 fn parameters(chart: &Chart) -> String {
+    if let Some(block) = &chart.block {
+        return format!(" of {}", short(&block.text));
+    }
     let names: Vec<&str> = chart.params.iter().map(|p| &*p.name.text).collect();
     if names.is_empty() { String::new() } else { short(&format!("({})", names.join(", "))) }
 }

@@ -87,8 +87,9 @@ pub(crate) fn unwritable() -> Refusal {
 /// True if two items mean the same: the empty braces of a step mean nothing.
 fn same(a: &Item, b: &Item) -> bool {
     let (Item::Chart(a), Item::Chart(b)) = (a, b) else { return a == b };
-    let Chart { kind, name, params, comment, every, items, at: _ } = a;
-    (kind, name, params, comment, every) == (&b.kind, &b.name, &b.params, &b.comment, &b.every)
+    let Chart { kind, name, params, block, comment, every, items, at: _ } = a;
+    (kind, name, params, block, comment, every)
+        == (&b.kind, &b.name, &b.params, &b.block, &b.comment, &b.every)
         && items.len() == b.items.len()
         && items.iter().zip(&b.items).all(|(a, b)| match (a, b) {
             (ChartItem::Step(a), ChartItem::Step(b)) => same_step(a, b),

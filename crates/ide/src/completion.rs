@@ -4,8 +4,8 @@ use g7_compile::references::{Declared, Kind, Member, Types, values};
 use g7_model::instances::drawn_for;
 use g7_model::words::{self, Told, Word};
 use g7_model::{
-    Composed, Document, Item, Name, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, VarKind,
-    say,
+    Chart, Composed, Document, Item, Name, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl,
+    VarKind, say,
 };
 use g7_rig::{LIBRARY, Part};
 use g7_syntax::{Token, TokenKind};
@@ -118,6 +118,7 @@ impl Place<'_> {
                 let elementary = types().into_iter().filter(|c| !c.insert.contains(' '));
                 elementary.chain(self.composed(around)).collect()
             }
+            (_, "of") if around == Around::File => self.blocks(),
             (TokenKind::Arrow, _) => self.steps(),
             (_, "profile") => {
                 let one = |p: ProfileName| choice(p.name(), "profile", Said::foreign(p.does()[0]), p.name());
@@ -181,6 +182,12 @@ impl Place<'_> {
     fn enclosing(&self, kind: Around) -> Option<&str> {
         let (_, name) = self.open().into_iter().find(|(around, _)| *around == kind)?;
         self.before.get(name).map(|t| self.word(t).trim_matches('`'))
+    }
+
+    /// The function block whose body, or one of whose charts, encloses the place.
+    fn block(&self) -> Option<&str> {
+        let of_chart = || self.here()?.block.as_ref().map(|b| &*b.text);
+        self.enclosing(Around::Block).or_else(of_chart)
     }
 
     /// The items whose braces enclose the place, the outermost first, each with the token that is its name.
@@ -261,7 +268,7 @@ impl Place<'_> {
             return Vec::new();
         }
         let shown = |c: &Composed| {
-            let what = if c.body.is_some() { say!("function block") } else { say!("structure") };
+            let what = if c.block { say!("function block") } else { say!("structure") };
             let told = c.comment.as_deref().map_or(what, Said::foreign);
             choice(&c.name.text, "type", told, &g7_syntax::show_name(&c.name.text))
         };
@@ -276,6 +283,17 @@ impl Place<'_> {
             _ => None,
         };
         items.filter_map(one).collect()
+    }
+
+    /// The function blocks that the file declares.
+    fn blocks(&self) -> Vec<Choice> {
+        let block = |c: &Choice| {
+            self.document
+                .items
+                .iter()
+                .any(|i| matches!(i, Item::Composed(b) if b.block && *b.name.text == c.label))
+        };
+        self.composed(Around::File).into_iter().filter(block).collect()
     }
 
     /// The names before the dot, joined by dots, without their indexes.
@@ -313,7 +331,7 @@ impl Place<'_> {
             };
             return Some(values(t).map(value).collect());
         }
-        let block = self.enclosing(Around::Block).and_then(|name| types.named(name));
+        let block = self.block().and_then(|name| types.named(name));
         let own = block.and_then(|of| Member::named(of, first)).map(|m| types.kind_of(&m));
         let (kind, rest) = own.map(|kind| (kind, behind)).or_else(|| {
             let of_chart = behind.split_first().and_then(|(name, rest)| {
@@ -334,7 +352,16 @@ impl Place<'_> {
                     let shown = g7_syntax::show_path_name(&m.name.text, false, false);
                     choice(&m.name.text, "member", Said::foreign(member_declaration(&m)), &shown)
                 };
-                Some(all.into_iter().map(one).collect())
+                let chart = |c: &Chart| {
+                    let told = comment(c.comment.as_deref());
+                    choice(
+                        &c.name.text,
+                        "chart",
+                        told,
+                        &g7_syntax::show_path_name(&c.name.text, false, false),
+                    )
+                };
+                Some(all.into_iter().map(one).chain(types.charts(of).map(chart)).collect())
             }
             (_, Kind::Plain(Type::Fb(kind))) => {
                 let member = |(m, ty, input): &(&str, Type, bool)| {
@@ -423,7 +450,7 @@ impl Place<'_> {
     /// The names that an expression can use: variables, steps, charts, parts of plants.
     fn values(&self) -> Vec<Choice> {
         let here = self.here().map(|c| c.name.text.clone());
-        let block = self.enclosing(Around::Block);
+        let block = self.block();
         let (mut own, mut found) = (Vec::new(), Vec::new());
         for n in names(self.document) {
             let name = &*n.name.text;

@@ -111,7 +111,7 @@ fn describe(n: &Named<'_>, language: Language) -> String {
             with(head, c.comment.as_deref())
         }
         Meaning::Type(c) => {
-            let word = if c.body.is_some() { "function block" } else { "struct" };
+            let word = if c.block { "function block" } else { "struct" };
             let head = with(Said::foreign(format!("`{word} {name}`")), c.comment.as_deref());
             // The variables of a body are of no use to those who declare one.
             let shown = Member::all(c).filter(|m| !matches!(m.declared, Declared::Local(_)));

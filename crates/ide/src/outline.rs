@@ -90,7 +90,7 @@ fn instance(i: &Instance) -> Vec<Entry> {
 
 /// A structure or a function block with its members.
 fn composed(c: &Composed) -> Entry {
-    let what = if c.body.is_some() { say!("function block") } else { say!("structure") };
+    let what = if c.block { say!("function block") } else { say!("structure") };
     let own = entry(&c.name, Kind::Function, detail(c.comment.as_deref(), || what), c.at.0);
     Entry { inside: c.members.iter().chain(&c.inouts).flat_map(variables).collect(), ..own }
 }

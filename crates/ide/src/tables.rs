@@ -176,7 +176,7 @@ pub fn member_declaration(member: &Member<'_>) -> String {
     let name = &*member.name.text;
     match member.declared {
         // The members of a structure are declared without a word.
-        Declared::Var(v) if member.of.body.is_none() => declaration_after("", name, v),
+        Declared::Var(v) if !member.of.block => declaration_after("", name, v),
         Declared::Var(v) => declaration(name, v),
         Declared::InOut(v) => declaration_after("inout ", name, v),
         Declared::Local(l) => format!("var {name} : {}", l.ty),

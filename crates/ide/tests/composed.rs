@@ -183,6 +183,29 @@ fn members_types_and_words_are_offered_where_they_can_stand() {
 }
 
 #[test]
+fn charts_of_function_blocks_are_offered_with_the_names_of_their_blocks() {
+    const BLOCK: &str = "function block Gripper {\n  input close : BOOL\n}\nchart Cycle of Gripper {\n  initial step 1\n  step 2\n  1 -> 2 when close\n}\nstruct Pair { x : INT }\nvar grip : ARRAY[1..2] OF Gripper\nprove never grip[1].Cycle.X2\n";
+    let cases: [(String, &[&str]); 4] = [
+        (BLOCK.replace("never grip[1].Cycle.X2", "never grip[1].|"), &["close", "Cycle"]),
+        (BLOCK.replace("grip[1].Cycle.X2", "grip[1].Cycle.|"), &["X1", "X2"]),
+        (BLOCK.replace("of Gripper {\n  initial", "of |"), &["Gripper"]),
+        (BLOCK.replace("when close", "when cl|"), &["close"]),
+    ];
+    for (text, wanted) in cases {
+        let (text, place) = marked(&text);
+        let mut open = file(BLOCK);
+        open.take(text.clone()).expect("a text");
+        let labels: Vec<String> = complete(&open, place).items.into_iter().map(|c| c.label).collect();
+        let first: Vec<&str> = labels.iter().take(wanted.len()).map(|l| l.as_str()).collect();
+        assert_eq!(first, wanted, "{text}");
+    }
+    let renamed = BLOCK.replace("Cycle", "Move");
+    let place = BLOCK.find("Cycle.X2").expect("a use");
+    let splices = rename(&file(BLOCK), place, "Move").expect("a new name");
+    assert_eq!(spliced(BLOCK, &splices).expect("splices fit"), renamed);
+}
+
+#[test]
 fn names_of_types_have_the_colour_of_types_and_tables_leave_members_out() {
     let file = file(TEXT);
     let class = |words: &str| {

@@ -305,6 +305,8 @@ pub struct Chart {
     pub name: Name,
     /// Its parameters. A chart with parameters runs only as its instances, see [`Instance`].
     pub params: Vec<Param>,
+    /// `of Gripper`: the function block whose instances have such a chart each.
+    pub block: Option<Name>,
     /// `"…"`.
     pub comment: Option<Box<str>>,
     /// `every 20ms`: the period of its evolutions.
@@ -471,7 +473,9 @@ pub struct Composed {
     pub members: Vec<VarDecl>,
     /// The parameters that stand for a variable of the caller; of a function block alone.
     pub inouts: Vec<VarDecl>,
-    /// The statements of a call; None for a structure.
+    /// True for a function block.
+    pub block: bool,
+    /// The statements of a call; None for a structure, and for a function block that has charts alone.
     pub body: Option<Body>,
     /// Where it stands.
     pub at: Place,

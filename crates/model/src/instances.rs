@@ -85,9 +85,18 @@ pub fn uninstantiated(document: &Document) -> Cow<'_, Document> {
     Cow::Owned(own)
 }
 
-/// The chart that is drawn for a name: `Axis` for `Axis[3]`, and for `Lift` of `instance Lift : Axis(7)`.
+/// The chart that is drawn for a name: `Axis` for `Axis[3]`, and for `Lift` of `instance Lift : Axis(7)`; `Cycle` for
+/// `left.Cycle`, if it is a chart of a function block.
 pub fn drawn_for<'n>(document: &'n Document, name: &'n str) -> &'n str {
-    own_instances(document).find(|(own, _)| *own == name).map_or_else(|| chart_in(name), |(_, chart)| chart)
+    if let Some((_, chart)) = own_instances(document).find(|(own, _)| *own == name) {
+        return chart;
+    }
+    let of_block = || {
+        let (_, own) = name.rsplit_once('.')?;
+        document.charts().find(|c| c.block.is_some() && *c.name.text == *own)?;
+        document.charts().all(|c| *c.name.text != *name).then_some(own)
+    };
+    of_block().unwrap_or_else(|| chart_in(name))
 }
 
 /// The instances that have a name of their own, each with its chart: `Lift` and `Axis` for `instance Lift : Axis(7)`.
@@ -183,6 +192,7 @@ impl<'d> Maker<'d> {
             problems: Vec::new(),
         };
         made.twice(document);
+        made.of_blocks(document);
         made
     }
 
@@ -194,6 +204,17 @@ impl<'d> Maker<'d> {
             if let Some(first) = first.or_else(|| self.plain.get(name).copied()) {
                 self.defined_twice(&chart.name, chart.name.at.0, first);
             }
+        }
+    }
+
+    /// Reports charts that have parameters and are those of a function block.
+    fn of_blocks(&mut self, document: &'d Document) {
+        for (chart, block) in document.charts().filter_map(|c| Some((c, c.block.as_ref()?))) {
+            let Some(param) = chart.params.first() else { continue };
+            let what = say!("a chart of a function block has no parameters");
+            let help = say!("declare an input of `{}`", block.text);
+            self.problems.push(Problem::new(&codes::BAD_DECLARATION, param.name.at.0, what).help(help));
+            self.used.insert(&chart.name.text);
         }
     }
 
@@ -398,6 +419,7 @@ impl<'d> Maker<'d> {
             // The drawing of all instances is the one chart: problems and references lead there.
             name: Name::new(own.text, chart.name.at.0),
             params: Vec::new(),
+            block: None,
             comment: i.comment.clone().or_else(|| chart.comment.clone()),
             items,
             kind: chart.kind,
@@ -485,10 +507,16 @@ impl Visitor for Numbered<'_, '_> {
     }
 
     fn chart_name(&mut self, name: &mut Name) {
-        if let Some((chart, Index::Parameter(parameter, added))) = instance_of(&name.text)
-            && let Some(number) = self.numbers.get(parameter).and_then(|n| n.checked_add(added))
-        {
-            name.text = format!("{chart}[{number}]").into();
+        let numbered = |part: &str| {
+            let (chart, Index::Parameter(parameter, added)) = instance_of(part)? else { return None };
+            let number = self.numbers.get(parameter)?.checked_add(added)?;
+            Some(format!("{chart}[{number}]"))
+        };
+        let parts: Vec<&str> = name.text.split('.').collect();
+        let new: Vec<Option<String>> = parts.iter().map(|p| numbered(p)).collect();
+        if new.iter().any(Option::is_some) {
+            let joined = parts.into_iter().zip(new).map(|(part, new)| new.unwrap_or_else(|| part.to_owned()));
+            name.text = joined.collect::<Vec<_>>().join(".").into();
         }
     }
 

@@ -113,14 +113,14 @@ structs! {
     Binding { element, attribute, value }
     Block { locals, statements, at }
     CaseArm { labels, body }
-    Chart { kind, name, params, comment, every, items, at }
+    Chart { kind, name, params, block, comment, every, items, at }
     Document { items, notes }
     Drive { input, value, at }
     Expr { kind, at }
     Fix { label, edits, sure }
     Function { name, params, result, body, at }
     Instance { chart, names, args, comment, at }
-    Composed { name, comment, members, inouts, body, at }
+    Composed { name, comment, members, inouts, block, body, at }
     Layout { chart, places, at }
     Local { names, ty, init, at }
     Name { text, at }

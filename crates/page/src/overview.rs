@@ -5,8 +5,7 @@ use std::collections::HashMap;
 use g7_compile::resolve::{of_profile, with_switch};
 use g7_edit::ChartSort;
 use g7_ide::{File, OWN};
-use g7_model::chart_in;
-use g7_model::instances::own_instances;
+use g7_model::instances::{drawn_for, own_instances};
 use g7_model::{Document, Nanos, ProfileName, Switch};
 use g7_rig::{Source, named};
 use serde::Serialize;
@@ -82,6 +81,9 @@ struct ChartRow {
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
     params: Vec<String>,
+    /// The function block whose instances have such a chart each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    block: Option<String>,
     /// Its instances that have a name of their own.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     #[cfg_attr(feature = "types", ts(as = "Option<_>"))]
@@ -180,6 +182,7 @@ fn charts(file: &File) -> Vec<ChartRow> {
             transitions: c.transitions().count(),
             file: (!own(&c)).then(|| file.source.home(c.at.0).name.clone()),
             params: c.params.iter().map(|p| p.name.text.to_string()).collect(),
+            block: c.block.as_ref().map(|b| b.text.to_string()),
             instances: instances.get(&*c.name.text).cloned().unwrap_or_default(),
             of: owners.get(&*c.name.text).map(|of| of.map(str::to_owned)),
         }
@@ -190,13 +193,11 @@ fn charts(file: &File) -> Vec<ChartRow> {
 
 /// The macro-step that a chart is the expansion of, or the step that encloses it: the first one, with its chart.
 fn owners(document: &Document) -> HashMap<&str, [&str; 2]> {
-    let own: HashMap<&str, &str> = own_instances(document).collect();
     let mut owners = HashMap::new();
     for chart in document.charts() {
         for step in chart.steps() {
             for opened in opens(step) {
-                let drawn = own.get(opened).copied().unwrap_or_else(|| chart_in(opened));
-                owners.entry(drawn).or_insert([&*chart.name.text, &*step.name.text]);
+                owners.entry(drawn_for(document, opened)).or_insert([&*chart.name.text, &*step.name.text]);
             }
         }
     }

@@ -15,6 +15,7 @@ use g7_compile::symbols::{Symbols, Variable};
 use g7_compile::{Compiled, Held};
 use g7_engine::{Addr, Common, GroupId, NONE, State, StepId};
 use g7_host::Runner;
+use g7_model::composed::decomposed;
 use g7_model::instances::instantiated;
 use g7_model::{Chart, ChartKind, Document, Said, Type, say};
 
@@ -26,6 +27,11 @@ pub struct Carried {
     pub runner: Runner,
     /// A sentence for each part of the old run that does not continue.
     pub lost: Vec<Said>,
+}
+
+/// The document with a chart for each instance.
+fn plain(document: &Document) -> Document {
+    decomposed(&instantiated(document).0).0.into_owned()
 }
 
 /// Continues a run of old charts with new ones.
@@ -42,7 +48,7 @@ pub fn carry(new: (&Bench, &Document), old: (&Bench, &Document), run: &Runner) -
     let mut lost = Vec::new();
     let mut own = run.state().clone();
     run.own_outputs().for_each(|(addr, value)| own.set_word(run.program(), addr, value));
-    let (now, then) = (instantiated(new.1).0, instantiated(old.1).0);
+    let (now, then) = (plain(new.1), plain(old.1));
     let state = charts((bench, &now), (before, &then), &own, &mut lost)?;
     let mut runner = bench.runner(0).from_state(state, run.due());
     plant(bench, before, run, &mut runner, &mut lost)?;
@@ -78,7 +84,8 @@ fn charts(
     for task in &at_work {
         lost.push(say!("the task `{task}` is being executed: it restarts"));
     }
-    let path_kept = |path: &str| path.split('.').next().is_some_and(|chart| kept.contains(chart));
+    let path_kept = |path: &str| chart_of(path, &kept).is_some();
+    let tasks: BTreeSet<&str> = tasks(old.1).map(|t| &*t.name.text).collect();
     let partners = partners(&was.symbols);
     let (mut steps, mut begin) = (Vec::new(), Vec::new());
     for step in (0..c.symbols.steps()).map(StepId) {
@@ -92,9 +99,8 @@ fn charts(
     let taken: BTreeSet<StepId> = steps.iter().map(|(_, old)| *old).collect();
     let gone = |s: &StepId| was.symbols.is_listed(*s) && !taken.contains(s);
     for step in state.active().filter(gone) {
-        let task = was.symbols.step_path(step).split('.').next().unwrap_or("").to_owned();
         // The loss of a task was reported already; do not report its steps again.
-        if !tasks(old.1).any(|t| *t.name.text == *task) {
+        if chart_of(was.symbols.step_path(step), &tasks).is_none() {
             lost.push(say!("step `{}` is active and no longer exists", was.symbols.step_name(step)));
         }
     }
@@ -127,6 +133,12 @@ fn kept_charts<'d>(new: &'d Document, old: &'d Document) -> BTreeSet<&'d str> {
     of(new).intersection(&of(old)).copied().collect()
 }
 
+/// The one of some charts with whose name the path of a step begins. A name can have dots: `left.Cycle`.
+fn chart_of<'p>(path: &'p str, charts: &BTreeSet<&str>) -> Option<&'p str> {
+    let mut heads = path.match_indices('.').filter_map(|(dot, _)| path.get(..dot));
+    heads.find(|head| charts.contains(head))
+}
+
 fn tasks(document: &Document) -> impl Iterator<Item = &Chart> {
     document.charts().filter(|c| c.kind == ChartKind::Task)
 }
@@ -135,7 +147,8 @@ fn tasks(document: &Document) -> impl Iterator<Item = &Chart> {
 fn at_work(document: &Document, was: &Compiled, state: &State) -> Vec<String> {
     let initial = &was.program.tables().initial;
     let busy = |task: &str| {
-        let own = |s: &StepId| was.symbols.step_path(*s).split('.').next() == Some(task);
+        let names = BTreeSet::from([task]);
+        let own = |s: &StepId| chart_of(was.symbols.step_path(*s), &names).is_some();
         state.active().filter(own).any(|s| !initial.contains(&s))
     };
     tasks(document).map(|t| t.name.text.to_string()).filter(|t| busy(t)).collect()

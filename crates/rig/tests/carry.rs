@@ -106,7 +106,21 @@ fn a_chart_more_begins_and_a_pulse_does_not_run_again() {
     assert_eq!(word(&bench, &runner, "q"), 1, "set stays set");
 }
 
-/// The values of a BOOL in the following scans.
+#[test]
+fn charts_of_function_blocks_go_on() {
+    let before = "input go : BOOL\nfunction block Grip {\n input close : BOOL\n output coil : BOOL\n}\nchart Cycle of Grip {\n var n : INT\n initial step 1\n step 2 { P1 n := n + 1; N coil }\n 1 -> 2 when close\n 2 -> 1 when not close\n}\nvar grip : ARRAY[1..2] OF Grip\npre { grip[2](close := go) }\n";
+    let after = before.replace("[1..2]", "[1..3]");
+    let (bench, carried) = changed(before, &after, &[("go", 1)], 3);
+    assert_eq!(texts(&carried.lost), [""; 0]);
+    assert_eq!(situation(&bench, &carried.runner), "grip[1].Cycle.1,grip[2].Cycle.2,grip[3].Cycle.1");
+    assert_eq!(word(&bench, &carried.runner, "grip[2].Cycle.n"), 1);
+    let (bench, carried) =
+        changed(&after, &after.replace("[1..3]", "[1..1]").replace("[2]", "[1]"), &[("go", 1)], 3);
+    // The only step with this name has the short one.
+    assert_eq!(situation(&bench, &carried.runner), "1");
+    assert!(texts(&carried.lost).contains(&"step `grip[2].Cycle.2` is active and no longer exists".into()));
+}
+
 #[test]
 fn instances_go_on_and_one_more_begins() {
     let before = "input a : ARRAY[1..3] OF BOOL\nchart Axis(i : INT) {\n var n : INT\n initial step 1\n step 2 { P1 n := n + i }\n 1 -> 2 when a[i]\n 2 -> 1 when not a[i]\n}\ninstance Axis[1..2]\n";
@@ -123,6 +137,7 @@ fn instances_go_on_and_one_more_begins() {
     );
 }
 
+/// The values of a BOOL in the following scans.
 fn seen(bench: &Bench, runner: &mut Runner, name: &str, scans: u32) -> Vec<u64> {
     (0..scans)
         .map(|_| {

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use g7_model::{Arg, Composed, Expr, ExprKind, Index, Name, Path, VarDecl, VarKind, instance_of};
+use g7_model::{Arg, Body, Composed, Expr, ExprKind, Index, Name, Path, VarDecl, VarKind, instance_of};
 
 use super::exec::Exec;
 use super::exec::Frame;
@@ -54,7 +54,7 @@ impl Model {
         for member in &ty.members {
             for name in &member.names {
                 let init = whole.init.as_ref().and_then(|e| field(e, &name.text)).or(member.init.as_ref());
-                let kind = match (member.kind, ty.body.is_some()) {
+                let kind = match (member.kind, ty.block) {
                     (VarKind::Const, _) => VarKind::Const,
                     (_, true) => VarKind::Var,
                     (_, false) => whole.kind,
@@ -79,7 +79,7 @@ fn field<'e>(e: &'e Expr, name: &str) -> Option<&'e Expr> {
 }
 
 /// The value of a constant of the type, where an expression is the name of one.
-fn with_constants(ty: &Composed, e: &Expr) -> Expr {
+pub(super) fn with_constants(ty: &Composed, e: &Expr) -> Expr {
     let ExprKind::Path(path) = &e.kind else { return e.clone() };
     let named = |m: &&VarDecl| m.kind == VarKind::Const && m.names.iter().any(|n| *n.text == path.text());
     ty.members.iter().find(named).and_then(|m| m.init.clone()).unwrap_or_else(|| e.clone())
@@ -95,7 +95,10 @@ impl Exec<'_> {
         let Some(running) = self.running.last() else { return self.m.resolve(scope, path) };
         match self.within(running, &texts(path)) {
             Some((scope, text)) => self.m.resolve(scope, &Path { names: split_member(self.m, scope, &text) }),
-            None => self.m.resolve(FILE, path),
+            None => {
+                let own = self.m.block_chart_of(&running.stands, path);
+                self.m.resolve(FILE, own.as_ref().unwrap_or(path))
+            }
         }
     }
 
@@ -144,6 +147,10 @@ impl Exec<'_> {
         if let Some(running) = self.running.last() {
             let found = self.within(running, &names).unwrap_or((FILE, names.join(".")));
             return Ok(Some(found).filter(|at| known(self.m, at)));
+        }
+        let short: Vec<&str> = names.iter().map(String::as_str).collect();
+        if let Some((home, names)) = self.m.of_block(scope, &short) {
+            return Ok(Some((home, names.join("."))).filter(|at| known(self.m, at)));
         }
         for s in self.m.chain(scope) {
             let at = (s, names.join("."));
@@ -201,7 +208,9 @@ impl Exec<'_> {
         let Some(stands) = self.stands(scope, path)? else { return self.outside(scope, path) };
         let Some(ty) = m.composed.get(&stands) else { return Ok(false) };
         let block = &m.types[ty];
-        let Some(body) = &block.body else { return Ok(false) };
+        if !block.block {
+            return Ok(false);
+        }
         let member = |name: &Name| (stands.0, format!("{}.{}", stands.1, name.text));
         let mut inouts = BTreeMap::new();
         for (k, arg) in args.iter().enumerate().filter(|(_, a)| !a.output) {
@@ -219,11 +228,13 @@ impl Exec<'_> {
         }
         self.running.push(Running { stands: stands.clone(), ty: ty.clone(), inouts });
         let mut frame = Frame::default();
-        let ran = self.locals(scope, body.block(), &mut frame).and_then(|()| {
+        let body = block.body.as_ref().map(Body::block);
+        let ran = body.map_or(Ok(()), |body| {
+            self.locals(scope, body, &mut frame)?;
             self.frames.push(frame);
-            let ran = self.block(FILE, &body.block().statements);
+            let ran = self.block(FILE, &body.statements);
             self.frames.pop();
-            ran
+            ran.map(drop)
         });
         self.running.pop();
         ran?;

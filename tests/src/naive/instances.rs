@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use g7_model::{Chart, Document, Expr, ExprKind, InstanceNames, Item, Literal, Name, VarDecl, VarKind};
 
+use super::block_charts::{Home, charts_of_var, charts_within};
 use super::value::{Run, bad};
 
 /// A chart that runs: its text, its name, and the values of its parameters.
@@ -11,6 +12,8 @@ pub(super) struct Made<'d> {
     pub(super) chart: &'d Chart,
     pub(super) name: String,
     pub(super) constants: Vec<VarDecl>,
+    /// For a chart of a function block: the instance.
+    pub(super) home: Option<Home>,
 }
 
 impl Made<'_> {
@@ -21,12 +24,24 @@ impl Made<'_> {
     }
 }
 
-/// The charts that an item of a file stands for.
+/// The charts that an item of a file stands for, those of the instances in their variables behind them.
 pub(super) fn charts_of<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'d>>> {
+    let mut all = Vec::new();
+    for made in own_charts(doc, item)? {
+        let within = if made.home.is_some() { Vec::new() } else { charts_within(doc, &made)? };
+        all.push(made);
+        all.extend(within);
+    }
+    Ok(all)
+}
+
+fn own_charts<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'d>>> {
     let i = match item {
-        Item::Chart(chart) if chart.params.is_empty() => {
-            return Ok(vec![Made { chart, name: chart.name.text.to_string(), constants: Vec::new() }]);
+        Item::Chart(chart) if chart.params.is_empty() && chart.block.is_none() => {
+            let name = chart.name.text.to_string();
+            return Ok(vec![Made { chart, name, constants: Vec::new(), home: None }]);
         }
+        Item::Var(v) => return charts_of_var(doc, None, v),
         Item::Instance(i) => i,
         _ => return Ok(Vec::new()),
     };
@@ -58,13 +73,13 @@ pub(super) fn charts_of<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'
                 init: Some(value),
                 ..VarDecl::new(VarKind::Const, vec![p.name.clone()], p.ty, i.at)
             });
-            Ok(Made { chart, name, constants: constants.collect() })
+            Ok(Made { chart, name, constants: constants.collect(), home: None })
         })
         .collect()
 }
 
 /// A bound: a number, or a constant of the file.
-fn whole(doc: &Document, e: &Expr) -> Run<i128> {
+pub(super) fn whole(doc: &Document, e: &Expr) -> Run<i128> {
     if let Some(n) = e.kind.whole() {
         return Ok(n);
     }

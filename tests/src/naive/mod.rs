@@ -5,6 +5,7 @@
 
 mod arrays;
 mod bits;
+mod block_charts;
 mod builtin;
 mod composed;
 mod control;

@@ -9,6 +9,7 @@ use g7_model::{
     TargetPlc, Type, VarDecl, VarKind,
 };
 
+use super::block_charts::Home;
 use super::instances::{charts_of, numbered};
 use super::named::named;
 use super::value::{Run, bad};
@@ -91,6 +92,8 @@ pub(super) struct Scope {
     pub(super) by_name: BTreeMap<String, StepId>,
     /// Of an instance: the parameters that are whole numbers.
     pub(super) numbers: BTreeMap<String, i128>,
+    /// Of a chart of a function block: the instance.
+    pub(super) home: Option<Home>,
     pub(super) transitions: Vec<TransId>,
     pub(super) vars: BTreeMap<String, VarId>,
     /// The indexes of the elements of each array, as in `[1,2]`.
@@ -212,7 +215,8 @@ impl Model {
                 let (id, chart) = (model.scopes.len(), made.chart);
                 let every = chart.every.map(Nanos::count);
                 let numbers = made.numbers();
-                model.scopes.push(Scope { numbers, ..Scope::new(&made.name, chart.kind, every, id) });
+                let home = made.home.clone();
+                model.scopes.push(Scope { numbers, home, ..Scope::new(&made.name, chart.kind, every, id) });
             }
         }
         model.read_items(doc)?;
@@ -230,8 +234,10 @@ impl Model {
         let mut next_chart = FILE + 1;
         for item in &doc.items {
             match item {
-                Item::Var(v) => self.declare(FILE, v),
-                Item::Chart(_) | Item::Instance(_) => {
+                Item::Chart(_) | Item::Instance(_) | Item::Var(_) => {
+                    if let Item::Var(v) = item {
+                        self.declare(FILE, v);
+                    }
                     for made in charts_of(doc, item)? {
                         made.constants.iter().for_each(|v| self.declare(next_chart, v));
                         self.read_chart(next_chart, made.chart)?;
@@ -363,8 +369,9 @@ impl Model {
 
     /// The chart with this name as one in `scope` writes it.
     pub(super) fn chart_named(&self, scope: ScopeId, name: &str) -> Option<ScopeId> {
-        let name = numbered(name, &self.scopes[scope].numbers);
-        (FILE + 1..self.scopes.len()).find(|&s| self.scopes[s].name == name)
+        let parts: Vec<String> = name.split('.').map(|p| numbered(p, &self.scopes[scope].numbers)).collect();
+        let named = |name: String| (FILE + 1..self.scopes.len()).find(|&s| self.scopes[s].name == name);
+        self.chart_names(scope, &parts.join(".")).into_iter().find_map(named)
     }
 
     fn link_expansions(&mut self) -> Run<()> {
@@ -539,6 +546,7 @@ impl Scope {
             steps: Vec::new(),
             by_name: BTreeMap::new(),
             numbers: BTreeMap::new(),
+            home: None,
             transitions: Vec::new(),
             vars: BTreeMap::new(),
             arrays: BTreeMap::new(),

@@ -1,6 +1,6 @@
 //! Resolves paths and direct names, from the innermost scope outward (grammar, "Expressions").
 
-use g7_model::{ChartKind, Path, Type};
+use g7_model::{ChartKind, Name, Path, Type};
 
 use super::model::{FILE, Model, ScopeId, StepId, VarId};
 
@@ -24,6 +24,10 @@ impl Model {
     /// Resolves a path that does not name a local variable of a body.
     pub(super) fn resolve(&self, scope: ScopeId, path: &Path) -> Option<Ref> {
         let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        if let Some((home, names)) = self.of_block(scope, &names) {
+            let name = |n: &String| Name::new(n.as_str(), path.names[0].at.0);
+            return self.resolve(home, &Path { names: names.iter().map(name).collect() });
+        }
         let chain = self.chain(scope);
         if let Some(found) = chain.iter().find_map(|&s| self.variable_in(s, &names)) {
             return Some(found);
@@ -31,9 +35,8 @@ impl Model {
         if let Some(found) = chain.iter().find_map(|&s| self.step_in(s, &names)) {
             return Some(found);
         }
-        let (&first, rest) = names.split_first()?;
-        if let Some(chart) = self.chart_named(scope, first)
-            && !rest.is_empty()
+        if let Some((chart, taken)) = self.block_chart(scope, &names)
+            && let rest @ [_, ..] = &names[taken..]
         {
             return self.variable_in(chart, rest).or_else(|| self.step_in(chart, rest));
         }

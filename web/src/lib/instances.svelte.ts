@@ -20,10 +20,11 @@ export function instancesOf(steps: readonly Part[]): Map<string, string[]> {
   return new Map([...found].map(([chart, names]) => [chart, [...names]]));
 }
 
-/** The chart that is drawn for a name: `Axis` for `Axis[3]`, and for an instance with a name of its own. */
+/** The chart that is drawn for a name: `Axis` for `Axis[3]`, for an instance with a name of its own, and `Cycle` for
+ * `left.Cycle`, the chart of an instance of a function block. */
 export function drawnFor(charts: readonly ChartRow[], name: string): string | undefined {
   const base = name.replace(/\[[^\]]*\]$/, '');
-  const found = charts.find((c) => c.name === name) ?? charts.find((c) => c.params && c.name === base) ?? charts.find((c) => c.instances?.includes(name));
+  const found = charts.find((c) => c.name === name) ?? charts.find((c) => c.params && c.name === base) ?? charts.find((c) => c.instances?.includes(name)) ?? charts.find((c) => c.block && name.endsWith(`.${c.name}`));
   return found?.name;
 }
 

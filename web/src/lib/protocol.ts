@@ -81,6 +81,8 @@ export type ChartRow = {
   file?: string;
   /** The names of its parameters. */
   params?: Array<string>;
+  /** The function block whose instances have such a chart each. */
+  block?: string;
   /** Its instances that have a name of their own. */
   instances?: Array<string>;
   /** The chart and the step that this chart is the expansion of, or that enclose it. */

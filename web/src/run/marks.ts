@@ -32,18 +32,21 @@ function* wordsOf(text: string): Generator<string> {
 }
 
 /** Finds the names of signals in the texts of symbols. `chart` is the name of the chart in the program: that of an
- * instance is `Axis[3]`; `parameter` is the first parameter of the chart. */
+ * instance is `Axis[3]`, that of an instance of a function block `left.Cycle`; `parameter` is the first parameter of the
+ * chart. */
 export function named(signals: readonly { name: string }[], chart: string, items: readonly Item[], parameter?: string): Named {
   const byName = new Map(signals.map((s, i) => [s.name, i]));
   const found = new Map<string, number[]>();
   // The index of an element can be the parameter that has the number of the instance.
   const number = parameter ? /\[(-?\d+)\]$/.exec(chart)?.[1] : undefined;
+  // The variables of a function block are those of its instance.
+  const home = chart.slice(0, Math.max(chart.lastIndexOf('.'), 0));
   for (const item of items) {
     if (!item.source) continue;
     const signals = new Set<number>();
     for (const word of wordsOf(item.source)) {
       const name = number === undefined ? word : word.replace(`[${parameter}]`, `[${number}]`);
-      const signal = byName.get(`${chart}.${name}`) ?? byName.get(name);
+      const signal = byName.get(`${chart}.${name}`) ?? (home ? byName.get(`${home}.${name}`) : undefined) ?? byName.get(name);
       if (signal !== undefined) signals.add(signal);
     }
     if (signals.size > 0) found.set(item.id, [...signals]);

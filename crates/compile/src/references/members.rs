@@ -5,7 +5,7 @@
 use std::collections::HashMap;
 
 use g7_model::composed::DEEP;
-use g7_model::{Body, ChartItem, Composed, Document, Item, Local, Name, Type, VarDecl};
+use g7_model::{Body, Chart, Composed, Document, Item, Local, Name, Type, VarDecl};
 
 use super::named::Definition;
 use crate::resolve::Traced;
@@ -18,6 +18,8 @@ pub struct Types<'d> {
     others: HashMap<&'d str, &'d VarDecl>,
     /// By the name of their chart and their own.
     vars: HashMap<(Option<&'d str>, &'d str), &'d VarDecl>,
+    /// The charts of function blocks.
+    charts: Vec<&'d Chart>,
 }
 
 /// The type of a variable or of a part of one; of an array, that of its elements.
@@ -108,11 +110,10 @@ impl<'d> Types<'d> {
                 Item::Composed(c) => _ = made.types.entry(&*c.name.text).or_insert(c),
                 Item::Type(t) => made.others.extend(t.names.first().map(|name| (&*name.text, t))),
                 Item::Var(v) => made.declare(None, v),
-                Item::Chart(c) => c.items.iter().for_each(|i| {
-                    if let ChartItem::Var(v) = i {
-                        made.declare(Some(&c.name.text), v);
-                    }
-                }),
+                Item::Chart(c) => {
+                    c.vars().for_each(|v| made.declare(Some(&c.name.text), v));
+                    made.charts.extend(c.block.is_some().then_some(c));
+                }
                 _ => {}
             }
         }
@@ -123,6 +124,11 @@ impl<'d> Types<'d> {
         for name in &v.names {
             self.vars.entry((chart, &*name.text)).or_insert(v);
         }
+    }
+
+    /// The charts of a function block.
+    pub fn charts(&self, of: &Composed) -> impl Iterator<Item = &'d Chart> {
+        self.charts.iter().copied().filter(|c| c.block.as_ref().is_some_and(|b| b.text == of.name.text))
     }
 
     /// The type with this name that is no structure and no function block.

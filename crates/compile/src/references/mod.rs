@@ -10,6 +10,7 @@
 
 mod members;
 mod named;
+mod plants;
 mod walk;
 
 use g7_model::{Document, FileId, Span};

@@ -242,6 +242,52 @@ fn each_name_before_a_member_hides_those_further_outside() {
     assert_eq!(lines(&variable(None, "k")), [16, 34, 42, 42, 43, 50, 55]);
 }
 
+const BLOCKS: &str = "\
+function block Gripper {
+  input close : BOOL
+  output coil : BOOL
+  body { coil := Cycle.X2 }
+}
+chart Cycle of Gripper {
+  var n : INT
+  initial step 1
+  step 2 { N coil; force Guard := {1} }
+  1 -> 2 when close and n = 0
+}
+chart Guard of Gripper {
+  initial step 1
+}
+struct Pair { left, right : Gripper }
+var pair : ARRAY[1..2] OF Pair
+var one : Gripper
+chart Main {
+  initial step 1
+  step 2 { force pair[2].left.Cycle := {2}; force one.Guard := {} }
+  1 -> 2 when one.Cycle.X2 and pair[1].right.Cycle.n > 0 and one.Cycle.X7
+}
+prove never one.Cycle.X2 and one.coil
+";
+
+#[test]
+fn charts_of_function_blocks_are_found_by_the_paths_of_their_instances() {
+    let lines = |definition: Definition| -> Vec<usize> {
+        places_in(BLOCKS, &definition).into_iter().map(|(line, _)| line).collect()
+    };
+    let step = |name: &str| Definition::Step { chart: "Cycle".into(), name: name.into() };
+    assert_eq!(lines(Definition::Chart("Cycle".into())), [4, 6, 20, 21, 21, 21, 23]);
+    assert_eq!(lines(Definition::Chart("Guard".into())), [9, 12, 20]);
+    assert_eq!(lines(step("2")), [4, 9, 10, 20, 21, 23]);
+    assert_eq!(lines(variable(Some("Cycle"), "n")), [7, 10, 21]);
+    assert_eq!(lines(of_type("Gripper")), [1, 6, 12, 15, 17]);
+    assert_eq!(lines(member("Gripper", "coil")), [3, 4, 9, 23]);
+    assert_eq!(lines(member("Gripper", "close")), [2, 10]);
+    assert_eq!(lines(member("Pair", "left")), [15, 20]);
+    assert_eq!(lines(variable(None, "one")), [17, 20, 21, 21, 23, 23]);
+    let (text, refs) = read(BLOCKS);
+    let unknown: Vec<_> = refs.unknown().iter().map(|u| place(&text, u.at)).collect();
+    assert_eq!(unknown, listed(&[(21, "X7")]));
+}
+
 #[test]
 fn a_member_that_is_not_there_is_unknown() {
     let (text, refs) = read(TYPES);

@@ -6,12 +6,13 @@ use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
     Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item,
-    Limits, Name, Order, Path, Placed, Plant, PlantItem, Situation, Span, Step, StepKind, Transition,
-    VarDecl, chart_in, instance_of, slot_of,
+    Limits, Name, Order, Path, Placed, Plant, Situation, Span, Step, StepKind, Transition, VarDecl, chart_in,
+    instance_of, slot_of,
 };
 
 use super::members::{Kind, Member, Types, values};
 use super::named::{Definition, Unknown, Use, Written};
+use super::plants::{declared, plant_named, plant_names};
 use crate::ir::ChartId;
 use crate::resolve::{Followed, Traced, Tracer, resolve_open};
 
@@ -24,6 +25,7 @@ pub(super) fn uses(doc: &Document) -> (Vec<Use>, Vec<Unknown>) {
         tracer,
         types: Types::of(&resolved),
         within: None,
+        block: None,
         locals: Vec::new(),
         plant: None,
         uses: Vec::new(),
@@ -77,6 +79,8 @@ struct Walk<'u, 'd> {
     types: Types<'d>,
     /// The function block whose body is being walked; its names hide all others.
     within: Option<&'d Composed>,
+    /// The function block of the chart that is being walked.
+    block: Option<&'d Composed>,
     locals: Vec<HashSet<&'d str>>,
     /// The plant that is being walked, and its names; they hide those of the charts.
     plant: Option<(&'d Plant, HashSet<&'d str>)>,
@@ -150,11 +154,14 @@ impl<'d> Walk<'_, 'd> {
         if self.is_local(&first.text) {
             return Some((Followed::whole(Vec::new()), Kind::Unknown));
         }
-        let own = self.within.and_then(|of| Member::named(of, &first.text));
+        let own = self.within.or(self.block).and_then(|of| Member::named(of, &first.text));
         let (mut found, kind) = match own {
             Some(member) => (vec![(0, member.definition(), 0)], self.types.kind_of(&member)),
             None => self.variable_at(&names, indexed)?,
         };
+        if let Some(found) = self.chart_behind(&names, &found, kind) {
+            return Some((found, Kind::Unknown));
+        }
         let behind: Vec<&str> = names.iter().skip(found.len()).map(|n| &*n.text).collect();
         let (members, kind) = self.types.behind(kind, &behind);
         let from = found.len();
@@ -165,6 +172,31 @@ impl<'d> Walk<'_, 'd> {
             _ => false,
         };
         Some((Followed { names: found, whole }, kind))
+    }
+
+    /// The path to a chart of an instance and behind it: `left.Cycle.X12`, `cell.gripper[2].Cycle`.
+    fn chart_behind(&self, names: &[Name], found: &[Traced], kind: Kind<'d>) -> Option<Followed> {
+        let (mut all, mut kind) = (found.to_vec(), kind);
+        loop {
+            let Kind::Composed(of) = kind else { return None };
+            let next = names.get(all.len())?;
+            let Some(member) = Member::named(of, &next.text) else { break };
+            all.push((all.len(), member.definition(), 0));
+            kind = self.types.kind_of(&member);
+        }
+        let Kind::Composed(of) = kind else { return None };
+        let (from, chart) = (all.len(), names.get(all.len())?);
+        self.types.charts(of).find(|c| c.name.text == chart.text)?;
+        let rest = names.get(from..)?;
+        let inner = match rest {
+            [_] => {
+                let chart = self.tracer.chart(&chart.text).map(|d| (0, d, 0));
+                Followed::whole(chart.into_iter().collect())
+            }
+            rest => self.part(rest).map_or_else(|| self.tracer.path(rest, &[]), |(found, _)| found),
+        };
+        all.extend(inner.names.into_iter().map(|(k, definition, before)| (from + k, definition, before)));
+        Some(Followed { names: all, whole: inner.whole })
     }
 
     /// The variable with which a path begins, after its chart if that is named; None if no member can follow it.
@@ -392,6 +424,11 @@ impl<'d> Walk<'_, 'd> {
     fn chart(&mut self, chart: &'d Chart) {
         let home = chart.name.text.to_string();
         self.add(chart.name.at.0, Definition::Chart(home.clone()), Written::Declared);
+        if let Some(block) = &chart.block {
+            self.block = self.types.named(&block.text);
+            let known = self.block.map(|of| Definition::Type(of.name.text.to_string()));
+            self.name(block, known, Written::Name);
+        }
         for param in &chart.params {
             let def = Definition::Variable { chart: Some(home.clone()), name: param.name.text.to_string() };
             self.add(param.name.at.0, def, Written::Declared);
@@ -406,15 +443,33 @@ impl<'d> Walk<'_, 'd> {
                 ChartItem::Section(s) => self.section(Some(&home), s),
             }
         }
+        self.block = None;
+    }
+
+    /// The name of a chart that an order or a macro-step uses; returns the chart that is drawn for it.
+    fn chart_name<'n>(&mut self, name: &'n Name) -> (&'n str, Option<Definition>) {
+        self.index(name);
+        let drawn = chart_in(&name.text);
+        let Some(chart) = self.tracer.chart(drawn) else {
+            let parts = parts_of(name);
+            if let Some(followed) = self.part(&parts).map(|(f, _)| f).filter(|f| f.whole && parts.len() > 1) {
+                let last = followed.names.last().map(|(_, d, _)| d.clone());
+                self.add_path(&parts);
+                return (name.text.rsplit('.').next().unwrap_or_default(), last);
+            }
+            return (drawn, None);
+        };
+        self.name(name, Some(chart.clone()), Written::Name);
+        (drawn, Some(chart))
     }
 
     fn step(&mut self, chart: &str, step: &'d Step) {
         let def = Definition::Step { chart: chart.to_owned(), name: step.name.text.to_string() };
         self.add(step.name.at.0, def, Written::Declared);
-        if let StepKind::Macro(expansion) = &step.kind {
-            self.index(expansion);
-            let chart = self.tracer.chart(chart_in(&expansion.text));
-            self.name(expansion, chart, Written::Name);
+        if let StepKind::Macro(expansion) = &step.kind
+            && self.chart_name(expansion).1.is_none()
+        {
+            self.name(expansion, None, Written::Name);
         }
         step.actions.iter().for_each(|a| self.action(a));
     }
@@ -476,23 +531,20 @@ impl<'d> Visitor<'d> for Walk<'_, 'd> {
     }
 
     fn order(&mut self, order: &'d Order) {
-        let name = match order {
-            Order::Force(name, situation) => {
-                if let Situation::Steps(steps) = situation {
-                    steps.iter().for_each(|step| self.step_name(chart_in(&name.text), step, Written::Step));
-                }
-                name
-            }
-            Order::Enable(name) | Order::Mask(name) | Order::Call(name) | Order::Enclose(name) => name,
-        };
-        self.index(name);
-        let chart = self.tracer.chart(chart_in(&name.text));
-        let output = matches!(order, Order::Mask(_)) && chart.is_none();
-        if output {
-            let def = self.tracer.path(std::slice::from_ref(name), &self.locals).names.into_iter().next();
-            return self.name(name, def.map(|d| d.1), Written::Name);
+        let (Order::Force(name, _)
+        | Order::Enable(name)
+        | Order::Mask(name)
+        | Order::Call(name)
+        | Order::Enclose(name)) = order;
+        let (drawn, chart) = self.chart_name(name);
+        if let Order::Force(_, Situation::Steps(steps)) = order {
+            steps.iter().for_each(|step| self.step_name(drawn, step, Written::Step));
         }
-        self.name(name, chart, Written::Name);
+        if chart.is_none() {
+            let output = matches!(order, Order::Mask(_));
+            let mut found = self.tracer.path(std::slice::from_ref(name), &self.locals).names.into_iter();
+            self.name(name, found.next().map(|d| d.1).filter(|_| output), Written::Name);
+        }
     }
 
     fn enter(&mut self, block: &'d Block) {
@@ -512,29 +564,16 @@ fn is_before_index(name: &Name) -> bool {
     name.at.0.bytes().len() < name.text.len()
 }
 
-fn plant_named<'d>(doc: &'d Document, name: &str) -> Option<&'d Plant> {
-    doc.items.iter().find_map(|i| match i {
-        Item::Plant(p) if *p.name.text == *name => Some(p),
-        _ => None,
-    })
-}
-
-/// The names that a plant declares itself.
-fn plant_names(plant: &Plant) -> HashSet<&str> {
-    plant.items.iter().flat_map(declared).map(|n| &*n.text).collect()
-}
-
-/// The names that an item of a plant declares.
-fn declared(item: &PlantItem) -> &[Name] {
-    match item {
-        PlantItem::Const { names, .. } => names,
-        PlantItem::State(s) => &s.names,
-        PlantItem::Parts(p) => std::slice::from_ref(&p.name),
-        PlantItem::Arrivals(a) => std::slice::from_ref(&a.name),
-        PlantItem::Rate(_)
-        | PlantItem::Drive(_)
-        | PlantItem::On(..)
-        | PlantItem::Each(..)
-        | PlantItem::View(_) => &[],
-    }
+/// The names in that of a chart of an instance, `gripper[2].Cycle`, each with its place.
+fn parts_of(name: &Name) -> Vec<Name> {
+    let mut start = name.at.0.start;
+    let one = |part: &str| {
+        let bare = chart_in(part).len() as u32;
+        let at = Span { start, end: start + bare, ..name.at.0 };
+        start += part.len() as u32 + 1;
+        Name::new(part, at)
+    };
+    // Blanks in the brackets stand between the names and their places.
+    let plain = name.at.0.bytes().len() == name.text.len();
+    if plain { name.text.split('.').map(one).collect() } else { vec![name.clone()] }
 }

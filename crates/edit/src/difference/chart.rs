@@ -1,7 +1,7 @@
 //! Changes charts and the lists of their items.
 
 use g7_model::{Chart, ChartItem, Span};
-use g7_syntax::{Part, chart_items_apart, print_part};
+use g7_syntax::{Part, TokenKind, chart_items_apart, print_part};
 
 use super::item;
 use super::lines::{Sheet, reindent};
@@ -13,8 +13,10 @@ pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Chart, new: &
     let (start, end) = (old.at.0.start as usize, old.at.0.end as usize);
     let (head, Some(open)) = sheet.header(start, end) else { return };
     if old.comment != new.comment {
-        let name = head.get(1).map_or(start, |t| t.end);
-        sheet.put_comment(&head, name, new.comment.as_deref());
+        // Parameters and the function block stand before the comment, the period behind it.
+        let named = head.iter().take_while(|t| t.kind != TokenKind::Comment && sheet.word(t) != "every");
+        let end = named.last().map_or(start, |t| t.end);
+        sheet.put_comment(&head, end, new.comment.as_deref());
     }
     let outer = sheet.indent(start);
     let block = Block { open: Some(open.end), close: end - 1, indent: format!("{outer}  "), outer };

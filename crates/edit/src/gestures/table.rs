@@ -24,7 +24,7 @@ fn is_head(item: &Item) -> bool {
 
 fn new_chart(d: &mut Draft<'_>, kind: ChartKind, name: &str) -> Chart {
     let (name, at) = (d.new_name(name), d.fresh());
-    Chart { kind, name, params: Vec::new(), comment: None, every: None, items: Vec::new(), at }
+    Chart { kind, name, params: Vec::new(), block: None, comment: None, every: None, items: Vec::new(), at }
 }
 
 /// Adds an expansion with an entry and an exit step; returns its name.

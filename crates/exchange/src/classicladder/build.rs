@@ -203,6 +203,7 @@ fn chart(
     let layout = Layout { chart: chart_name.clone(), places, at: at.into() };
     let chart = Chart {
         params: Vec::new(),
+        block: None,
         kind: ChartKind::Chart,
         name: chart_name,
         comment: (!comment.is_empty()).then(|| comment.join(" / ").into()),

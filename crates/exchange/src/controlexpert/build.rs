@@ -175,6 +175,7 @@ fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Cha
     let texts: Vec<&str> = sheet.texts.iter().map(String::as_str).filter(|t| !t.is_empty()).collect();
     let chart = Chart {
         params: Vec::new(),
+        block: None,
         kind: if sheet.inner { ChartKind::Expansion } else { ChartKind::Chart },
         name: Name::new(title, at),
         comment: (!texts.is_empty()).then(|| texts.join(" / ").into()),

@@ -103,6 +103,7 @@ impl Builder<'_> {
         let pace = self.pace(sheet);
         Some(Chart {
             params: Vec::new(),
+            block: None,
             kind: if self.is_expansion(index) { ChartKind::Expansion } else { ChartKind::Chart },
             name: Name::new(self.names.chart(index), self.report.span(&name_place(&sheet.name, &sheet.at))),
             comment: None,

@@ -190,6 +190,7 @@ pub(super) fn read(content: Xml, title: &str, presets: &mut Presets, report: &mu
     reader.items.extend(actions.into_iter().map(ChartItem::Action));
     let chart = Chart {
         params: Vec::new(),
+        block: None,
         kind: ChartKind::Chart,
         name: Name::new(title, at),
         comment: (!texts.is_empty()).then(|| texts.join(" / ").into()),

@@ -275,6 +275,7 @@ fn chart(sequence: &Sequence, title: &str, report: &mut Report) -> Chart {
     }
     Chart {
         params: Vec::new(),
+        block: None,
         kind: ChartKind::Chart,
         name: Name::new(title, at),
         comment: (!sequence.title.is_empty()).then(|| sequence.title.as_str().into()),

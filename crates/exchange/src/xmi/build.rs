@@ -81,6 +81,7 @@ impl<'a> Builder<'_, 'a> {
         }
         Some(Chart {
             params: Vec::new(),
+            block: None,
             kind: if sheet.expansion { ChartKind::Expansion } else { ChartKind::Chart },
             name: Name::new(self.names.chart(index), at),
             comment: None,

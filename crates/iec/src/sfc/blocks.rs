@@ -94,7 +94,7 @@ fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mu
     };
     let body = Body::St(Block { locals, statements, at: body_at.into() });
     let at = unit.at.into();
-    Composed { name: unit.name, comment: None, members, inouts, body: Some(body), at }
+    Composed { name: unit.name, comment: None, members, inouts, block: true, body: Some(body), at }
 }
 
 /// True if a variable can be a local one of a body.

@@ -234,6 +234,7 @@ impl Builder<'_> {
             kind: ChartKind::Chart,
             name: unit.name.clone(),
             params: Vec::new(),
+            block: None,
             comment: None,
             every: every.filter(|e| Some(*e) != self.paces.scan),
             items,

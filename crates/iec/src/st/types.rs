@@ -256,8 +256,15 @@ impl Parser<'_> {
         let at = self.since(start).into();
         let name = name.clone();
         types.add(&name, Shape::Struct(name.clone()));
-        let made =
-            Composed { name: name.clone(), comment: None, members, inouts: Vec::new(), body: None, at };
+        let made = Composed {
+            name: name.clone(),
+            comment: None,
+            members,
+            inouts: Vec::new(),
+            block: false,
+            body: None,
+            at,
+        };
         types.structures.push(made);
         Shape::Struct(name)
     }

@@ -496,6 +496,7 @@ impl<'d> Lower<'d> {
                 kind: if inner { ChartKind::Expansion } else { ChartKind::Chart },
                 name,
                 params: Vec::new(),
+                block: None,
                 comment: chart.comment.clone(),
                 every: self.pace(head),
                 items,

@@ -3,8 +3,8 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::{
-    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Problem, Said, Span, Type, VarDecl,
-    VarKind,
+    Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Layout, Name, Problem, Said, Span, Type,
+    VarDecl, VarKind,
 };
 
 /// The variables of all members together, and the statements of all calls together.
@@ -25,6 +25,14 @@ pub struct Composition<'d> {
     pub(super) types: HashMap<&'d str, &'d Composed>,
     pub(super) file: Scope<'d>,
     pub(super) charts: HashMap<&'d str, Scope<'d>>,
+    /// The charts of each function block that has some.
+    pub(super) owned: HashMap<&'d str, Vec<&'d Chart>>,
+    /// The types whose variables have charts, in themselves or in their members.
+    pub(super) holders: HashSet<&'d str>,
+    /// True if a chart of a function block has variables of such types.
+    pub(super) nested: bool,
+    /// The places of the elements of charts on the drawing.
+    pub(super) layouts: HashMap<&'d str, Vec<&'d Layout>>,
     /// The transition sections of the file.
     pub(super) sections: HashSet<&'d str>,
     /// The types that stand in themselves or too deep in each other. They are reported already.
@@ -83,7 +91,7 @@ impl<'d> Composition<'d> {
         let concerned = |item: &'d Item| match item {
             Item::Composed(_) => true,
             Item::Var(v) => is_composed(v),
-            Item::Chart(c) => vars(c).any(is_composed),
+            Item::Chart(c) => c.block.is_some() || vars(c).any(is_composed),
             _ => false,
         };
         if !document.items.iter().any(concerned) {
@@ -93,6 +101,10 @@ impl<'d> Composition<'d> {
             types: HashMap::new(),
             file: HashMap::new(),
             charts: HashMap::new(),
+            owned: HashMap::new(),
+            holders: HashSet::new(),
+            nested: false,
+            layouts: HashMap::new(),
             sections: HashSet::new(),
             wrong: HashSet::new(),
             blocks: HashSet::new(),
@@ -115,11 +127,16 @@ impl<'d> Composition<'d> {
                 Item::Chart(c) => {
                     let scope = made.charts.entry(&*c.name.text).or_default();
                     vars(c).for_each(|v| declare(scope, v));
+                    if let Some(block) = &c.block {
+                        made.owned.entry(&*block.text).or_default().push(c);
+                    }
                 }
+                Item::Layout(l) => made.layouts.entry(&*l.chart.text).or_default().push(l),
                 _ => {}
             }
         }
         made.types(document);
+        made.owners(document);
         Some(made)
     }
 
@@ -176,7 +193,7 @@ fn declare<'d>(scope: &mut Scope<'d>, v: &'d VarDecl) {
 /// part of their names.
 pub(super) fn is_local(of: &Composed, member: &VarDecl) -> bool {
     let block = member.of.is_none() && matches!(member.ty, Type::Fb(_));
-    block || of.body.is_some() && matches!(member.kind, VarKind::Var | VarKind::Const)
+    block || of.block && matches!(member.kind, VarKind::Var | VarKind::Const)
 }
 
 /// The names that an expression or statement can see.
@@ -187,6 +204,16 @@ pub(super) enum Env<'e, 'd> {
         /// Local variables, which hide others.
         locals: Vec<Box<str>>,
         /// Why no function block can be called here.
+        uncallable: Option<Said>,
+    },
+    /// Those of a chart of a function block, of the block and of the file.
+    Chart {
+        instance: Spot<'d>,
+        /// The chart of the block.
+        chart: &'d str,
+        /// The name of that of the instance.
+        full: &'e Name,
+        locals: Vec<Box<str>>,
         uncallable: Option<Said>,
     },
     /// Those of a function block.
@@ -204,17 +231,55 @@ impl<'e, 'd> Env<'e, 'd> {
         Env::Outer { chart, locals: Vec::new(), uncallable: None }
     }
 
+    /// The same names behind those of a body.
+    pub(super) fn within(&self, own: Vec<Box<str>>, why: Option<Said>) -> Env<'e, 'd> {
+        match self {
+            Env::Outer { chart, .. } => Env::Outer { chart: *chart, locals: own, uncallable: why },
+            Env::Chart { instance, chart, full, .. } => {
+                Env::Chart { instance: instance.clone(), chart, full, locals: own, uncallable: why }
+            }
+            // A body stands in no other one.
+            Env::Block { outer, .. } => outer.within(own, why),
+        }
+    }
+
+    /// The instance whose names these are.
+    pub(super) fn instance(&self) -> Option<&Spot<'d>> {
+        match self {
+            Env::Outer { .. } => None,
+            Env::Chart { instance, .. } | Env::Block { instance, .. } => Some(instance),
+        }
+    }
+
+    /// The name of the chart round it all.
+    pub(super) fn home(&self) -> Option<&str> {
+        match self {
+            Env::Outer { chart, .. } => *chart,
+            Env::Chart { full, .. } => Some(&full.text),
+            Env::Block { outer, .. } => outer.home(),
+        }
+    }
+
+    /// The names where an instance is declared, as far as a name of its own tells.
+    pub(super) fn around(&self) -> &Env<'e, 'd> {
+        match self {
+            Env::Block { outer, .. } => outer,
+            env => env,
+        }
+    }
+
     /// The chart round it all, and the local variables there.
     pub(super) fn root(&self) -> (Option<&str>, &[Box<str>]) {
         match self {
             Env::Outer { chart, locals, .. } => (*chart, locals),
+            Env::Chart { chart, locals, .. } => (Some(chart), locals),
             Env::Block { outer, .. } => outer.root(),
         }
     }
 
     pub(super) fn uncallable(&self) -> Option<&Said> {
         match self {
-            Env::Outer { uncallable, .. } => uncallable.as_ref(),
+            Env::Outer { uncallable, .. } | Env::Chart { uncallable, .. } => uncallable.as_ref(),
             Env::Block { outer, .. } => outer.uncallable(),
         }
     }

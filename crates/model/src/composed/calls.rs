@@ -53,7 +53,7 @@ impl<'d> Composition<'d> {
             return vec![Stmt { kind: StmtKind::Call(path, args), at }];
         };
         let Some(spot) = spot else { return Vec::new() };
-        if of.body.is_none() {
+        if !of.block {
             let what = say!("`{}` is a structure; it cannot be called", spot.shown());
             self.problems.push(Problem::new(&codes::WRONG_KIND, at_of(&segments), what));
             return Vec::new();
@@ -133,7 +133,6 @@ impl<'d> Composition<'d> {
 
     fn inlined(&mut self, spot: Spot<'d>, call: &Call<'_, 'd>, env: &Env<'_, 'd>) -> Option<Vec<Stmt>> {
         let Call { of, args, at } = *call;
-        let body = of.body.as_ref()?;
         if !self.takes(1 + args.len(), at.0) {
             return None;
         }
@@ -176,7 +175,8 @@ impl<'d> Composition<'d> {
             return None; // A name that has no meaning would be told again at each of its places.
         }
         let inner = Env::Block { instance: spot, inouts, outer: env };
-        match returns::without(body.block().statements.clone()) {
+        let statements = of.body.as_ref().map_or(Vec::new(), |body| body.block().statements.clone());
+        match returns::without(statements) {
             Ok(statements) => {
                 // The body does not see the loop variables of its caller.
                 let loops = std::mem::take(&mut self.loops);

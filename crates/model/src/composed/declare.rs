@@ -105,7 +105,7 @@ impl<'d> Composition<'d> {
             for name in &member.names {
                 let Some(values) = self.fields(ty, member, &name.text, &part, env) else { return };
                 let mut inner = Part { values, retain: part.retain || member.retain, ..part.clone() };
-                if ty.body.is_some() || member.kind == VarKind::Const {
+                if ty.block || member.kind == VarKind::Const {
                     inner.kind = if member.kind == VarKind::Const { VarKind::Const } else { VarKind::Var };
                 }
                 if is_local(ty, member) && !part.dimensions.is_empty() {
@@ -228,7 +228,7 @@ impl<'d> Composition<'d> {
         visit_mut::expr(&mut e, &mut names);
         let (chart, _) = env.root();
         for name in names.0 {
-            if let Some(own) = chart.and_then(|c| self.charts.get(c)?.get(&*name.text)).map(|v| v.at.0) {
+            if let Some(own) = chart.and_then(|c| self.scope(c)?.get(&*name.text)).map(|v| v.at.0) {
                 self.once(super::paths::two_meanings(&name, own));
             }
         }
@@ -350,14 +350,11 @@ impl<'d> Composition<'d> {
     }
 
     fn constant(&self, name: &str, env: &Env<'_, 'd>) -> Option<i128> {
-        let own = match env {
-            Env::Block { instance, .. } => instance.of.and_then(|of| super::paths::member(of, name)),
-            Env::Outer { .. } => None,
-        };
+        let own = env.instance().and_then(|i| i.of).and_then(|of| super::paths::member(of, name));
         let (chart, locals) = env.root();
         let outer = || {
             let shown = !locals.iter().any(|l| **l == *name);
-            let of_chart = chart.filter(|_| shown).and_then(|c| self.charts.get(c)?.get(name));
+            let of_chart = chart.filter(|_| shown).and_then(|c| self.scope(c)?.get(name));
             of_chart.or_else(|| self.file.get(name).filter(|_| shown)).copied()
         };
         let decl = own.or_else(outer)?;

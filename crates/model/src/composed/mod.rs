@@ -17,6 +17,7 @@
 
 mod base;
 mod calls;
+mod charts;
 mod chosen;
 mod copies;
 mod declare;

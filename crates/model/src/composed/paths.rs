@@ -45,6 +45,9 @@ impl<'d> Composition<'d> {
             Env::Block { instance, inouts, .. } => {
                 inouts.contains_key(name) || instance.of.is_some_and(|of| member(of, name).is_some())
             }
+            Env::Chart { instance, .. } => {
+                instance.of.is_some_and(|of| member(of, name).is_some()) || self.base(name, env).is_some()
+            }
             Env::Outer { .. } => self.base(name, env).is_some(),
         };
         inner || self.file.contains_key(name) || self.charts.contains_key(name)
@@ -56,7 +59,7 @@ impl<'d> Composition<'d> {
         if locals.iter().any(|l| **l == *name) {
             return None;
         }
-        let own = chart.and_then(|c| self.charts.get(c)?.get(name));
+        let own = chart.and_then(|c| self.scope(c)?.get(name));
         own.or_else(|| self.file.get(name)).copied()
     }
 
@@ -64,8 +67,14 @@ impl<'d> Composition<'d> {
     pub(super) fn spot(&mut self, segments: &[Segment], env: &Env<'_, 'd>) -> Result<Option<Spot<'d>>, Lost> {
         let [first, rest @ ..] = segments else { return Ok(None) };
         match env {
-            Env::Outer { .. } => {
-                if let (Some(scope), [second, rest @ ..]) = (self.charts.get(&*first.name.text), rest)
+            Env::Chart { instance, locals, .. }
+                if !locals.contains(&first.name.text)
+                    && instance.of.is_some_and(|of| member(of, &first.name.text).is_some()) =>
+            {
+                self.member_of_own(instance.clone(), first, rest).map(Some)
+            }
+            Env::Outer { .. } | Env::Chart { .. } => {
+                if let (Some(scope), [second, rest @ ..]) = (self.scope(&first.name.text), rest)
                     && let Some(decl) = scope.get(&*second.name.text).copied()
                 {
                     let spot = self.start(second, decl, Some(first.name.clone()));
@@ -86,9 +95,7 @@ impl<'d> Composition<'d> {
                 }
                 let of = instance.of;
                 if of.is_some_and(|of| member(of, &first.name.text).is_some()) {
-                    let mut spot = self.step(instance.clone(), first)?;
-                    spot.inner = false;
-                    return self.follow(spot, rest).map(Some);
+                    return self.member_of_own(instance.clone(), first, rest).map(Some);
                 }
                 if !self.is_variable(&first.name.text, env) && !self.is_known(&first.name.text) {
                     return Err(self.foreign(&first.name));
@@ -100,10 +107,21 @@ impl<'d> Composition<'d> {
         }
     }
 
+    /// A member of the instance whose text it is, which can write it.
+    fn member_of_own(
+        &mut self,
+        instance: Spot<'d>,
+        first: &Segment,
+        rest: &[Segment],
+    ) -> Result<Spot<'d>, Lost> {
+        let spot = self.step(instance, first)?;
+        self.follow(Spot { inner: false, ..spot }, rest)
+    }
+
     /// Reports a name of the file in a function block that has another meaning where the block is called.
     fn captured(&mut self, name: &Name, instance: &Spot<'d>, env: &Env<'_, 'd>) -> Result<(), Lost> {
         let (chart, locals) = env.root();
-        let own = chart.and_then(|c| self.charts.get(c)?.get(&*name.text)).map(|v| v.at.0);
+        let own = chart.and_then(|c| self.scope(c)?.get(&*name.text)).map(|v| v.at.0);
         let Some(own) = own.or_else(|| locals.contains(&name.text).then_some(instance.at)) else {
             return Ok(());
         };
@@ -122,7 +140,7 @@ impl<'d> Composition<'d> {
         Lost
     }
 
-    fn start(&self, segment: &Segment, decl: &'d VarDecl, chart: Option<Name>) -> Spot<'d> {
+    pub(super) fn start(&self, segment: &Segment, decl: &'d VarDecl, chart: Option<Name>) -> Spot<'d> {
         Spot {
             at: chart.as_ref().map_or(segment.name.at.0, |c| c.at.0.to(segment.name.at.0)),
             chart,
@@ -154,6 +172,22 @@ impl<'d> Composition<'d> {
         let Some(of) = spot.of else { return Err(Lost) };
         let name = &segment.name;
         let Some(decl) = member(of, &name.text) else { return Err(self.no_member(of, name)) };
+        spot = self.entered(spot)?;
+        if is_local(of, decl) && !spot.index.is_empty() {
+            spot.text = self.numbered(&spot)?;
+            spot.index.clear();
+        }
+        spot.text = format!("{}.{}", spot.text, name.text);
+        spot.own = segment.index.clone();
+        spot.inner |= of.block && decl.kind != VarKind::Input;
+        spot.of = self.type_of(decl);
+        spot.decl = decl;
+        spot.at = spot.at.to(name.at.0);
+        Ok(spot)
+    }
+
+    /// The same part, whose members can follow: the indexes behind its name have their places in it.
+    pub(super) fn entered(&mut self, mut spot: Spot<'d>) -> Result<Spot<'d>, Lost> {
         let dimensions = spot.decl.array.as_ref().map_or(0, |a| a.dimensions.len());
         if spot.own.len() != dimensions && !(spot.own.is_empty() && spot.index.is_empty() && spot.whole) {
             let (has, given, text) = (dimensions, spot.own.len(), filled(&spot.text, &spot.index));
@@ -164,21 +198,11 @@ impl<'d> Composition<'d> {
             spot.text = format!("{}[{}]", spot.text, ",".repeat(dimensions - 1));
         }
         spot.index.append(&mut spot.own);
-        if is_local(of, decl) && !spot.index.is_empty() {
-            spot.text = self.numbered(&spot)?;
-            spot.index.clear();
-        }
-        spot.text = format!("{}.{}", spot.text, name.text);
-        spot.own = segment.index.clone();
-        spot.inner |= of.body.is_some() && decl.kind != VarKind::Input;
-        spot.of = self.type_of(decl);
-        spot.decl = decl;
-        spot.at = spot.at.to(name.at.0);
         Ok(spot)
     }
 
     /// The name of a part with its indexes, which are numbers.
-    fn numbered(&mut self, spot: &Spot<'d>) -> Result<String, Lost> {
+    pub(super) fn numbered(&mut self, spot: &Spot<'d>) -> Result<String, Lost> {
         match spot.index.iter().find(|e| e.kind.whole().is_none()) {
             None => Ok(filled(&spot.text, &spot.index)),
             Some(e) => {
@@ -200,7 +224,9 @@ impl<'d> Composition<'d> {
         let what = say!("`{}` has no member `{}`", of.name.text, name.text);
         let problem = Problem::new(&codes::UNKNOWN_MEMBER, name.at.0, what)
             .related(of.name.at.0, say!("declared here"));
-        let all: Vec<&str> = of.members.iter().flat_map(|m| &m.names).map(|n| &*n.text).collect();
+        let members = of.members.iter().flat_map(|m| &m.names);
+        let charts = self.owned.get(&*of.name.text).into_iter().flatten().map(|c| &c.name);
+        let all: Vec<&str> = members.chain(charts).map(|n| &*n.text).collect();
         let problem = match crate::similar(&name.text, &all) {
             Some(near) => problem.meant(near),
             None => problem.help(say!("its members are {}", crate::Said::foreign(all.join(", ")))),
@@ -245,6 +271,11 @@ impl<'d> Composition<'d> {
 
     /// Replaces a path and the names in its indexes.
     fn replace(&mut self, e: &mut Expr, env: &Env<'_, 'd>, written: bool) {
+        match self.step_path(e, env) {
+            Ok(None) => {}
+            Ok(Some(kind)) => return e.kind = kind,
+            Err(Lost) => return e.kind = ExprKind::Bad,
+        }
         let kind = match self.spot_of(e, env) {
             Ok(Some(spot)) => self.plain(spot, written),
             Err(Lost) => None,
@@ -267,7 +298,10 @@ impl<'d> Composition<'d> {
         };
         let mut segments = self.segments(path, index, env);
         self.indexed(&mut segments, env);
-        let spot = self.spot(&segments, env)?;
+        let spot = match self.charted(&mut segments, env)? {
+            true => self.spot(&segments, &Env::outside()),
+            false => self.spot(&segments, env),
+        }?;
         Ok(spot.map(|mut spot| {
             spot.tail.extend(bit.map(|b| (**b).clone()));
             spot
@@ -278,7 +312,7 @@ impl<'d> Composition<'d> {
     pub(super) fn plain(&mut self, spot: Spot<'d>, written: bool) -> Option<ExprKind> {
         if let Some(of) = spot.of {
             let text = spot.shown();
-            let what = if of.body.is_some() {
+            let what = if of.block {
                 say!("`{text}` is an instance of `{}`; it is no value", of.name.text)
             } else {
                 say!("`{text}` is a structure of `{}`; here is a place for one of its members", of.name.text)

@@ -86,7 +86,8 @@ impl<'d> Composition<'d> {
             return DEEP;
         }
         way.push(c);
-        let of: Vec<&VarDecl> = c.members.iter().filter(|m| m.of.is_some()).collect();
+        let charts = self.owned.get(name).into_iter().flatten().flat_map(|chart| chart.vars());
+        let of: Vec<&VarDecl> = c.members.iter().chain(charts).filter(|m| m.of.is_some()).collect();
         let inner: Vec<&'d Composed> = of.iter().filter_map(|m| self.type_of(m)).collect();
         let deepest = inner.into_iter().map(|t| self.depth(t, way, depths)).max();
         way.pop();
@@ -94,7 +95,7 @@ impl<'d> Composition<'d> {
             Some(of) => self.blocks.contains(&*of.text),
             None => matches!(m.ty, Type::Fb(_)),
         };
-        if c.body.is_some() || c.members.iter().any(held) {
+        if c.block || c.members.iter().any(held) {
             self.blocks.insert(name);
         }
         let depth = deepest.map_or(0, |d| d + 1).min(DEEP);

@@ -3,8 +3,8 @@
 use super::base::{Composition, Env};
 use super::paths::one_name;
 use crate::{
-    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Path, Problem, Said,
-    Stmt, StmtKind, Target, Work, codes, say,
+    Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Path, Problem,
+    Said, Stmt, StmtKind, Target, Work, codes, say,
 };
 
 impl<'d> Composition<'d> {
@@ -22,14 +22,27 @@ impl<'d> Composition<'d> {
         let outside = Env::outside();
         match item {
             Item::Composed(_) => {}
-            Item::Var(v) => items.extend(self.declared(v.clone(), &outside).into_iter().map(Item::Var)),
-            Item::Chart(c) => items.push(Item::Chart(self.chart(c))),
+            Item::Var(v) => {
+                items.extend(self.declared(v.clone(), &outside).into_iter().map(Item::Var));
+                items.extend(self.charts_of(v, None, &outside));
+            }
+            Item::Chart(c) if c.block.is_some() => {}
+            Item::Layout(l) if self.is_of_block(&l.chart) => {}
+            Item::Chart(c) => {
+                let env = Env::of(Some(&c.name.text));
+                items.push(Item::Chart(self.chart(c, &c.name, &env)));
+                for v in c.vars() {
+                    items.extend(self.charts_of(v, Some(&c.name), &env));
+                }
+            }
             other => {
                 let mut own = other.clone();
                 match &mut own {
-                    Item::Action(a) => self.body_of(&mut a.body, None),
-                    Item::Section(s) => self.block(&mut s.body, None, Some(say!("a transition section"))),
-                    Item::Pre(body, _) | Item::Post(body, _) => self.body_of(body, None),
+                    Item::Action(a) => self.body_of(&mut a.body, &outside),
+                    Item::Section(s) => {
+                        self.block(&mut s.body, &outside, Some(say!("a transition section")));
+                    }
+                    Item::Pre(body, _) | Item::Post(body, _) => self.body_of(body, &outside),
                     Item::Prove(p) => p.kind.claims_mut().into_iter().for_each(|e| self.expr(e, &outside)),
                     _ => {}
                 }
@@ -38,84 +51,84 @@ impl<'d> Composition<'d> {
         }
     }
 
-    fn chart(&mut self, chart: &'d Chart) -> Chart {
-        let name = &*chart.name.text;
+    /// A chart with plain names, those of `env`; `name` is its own.
+    pub(super) fn chart(&mut self, chart: &'d Chart, name: &Name, env: &Env<'_, 'd>) -> Chart {
         let mut items = Vec::new();
         for item in &chart.items {
             if let ChartItem::Var(v) = item {
-                let declared = self.declared(v.clone(), &Env::of(Some(name)));
+                let declared = self.declared(v.clone(), env);
                 items.extend(declared.into_iter().map(ChartItem::Var));
                 continue;
             }
             let mut own = item.clone();
             match &mut own {
-                ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, name)),
+                ChartItem::Step(s) => s.actions.iter_mut().for_each(|a| self.action(a, env)),
                 ChartItem::Transition(t) => {
-                    self.expr(&mut t.receptivity, &Env::of(Some(name)));
-                    t.on_clearing.iter_mut().for_each(|b| self.block(b, Some(name), None));
+                    self.expr(&mut t.receptivity, env);
+                    t.on_clearing.iter_mut().for_each(|b| self.block(b, env, None));
                 }
-                ChartItem::Pre(body, _) | ChartItem::Post(body, _) => self.body_of(body, Some(name)),
-                ChartItem::Action(a) => self.body_of(&mut a.body, Some(name)),
-                ChartItem::Section(s) => {
-                    self.block(&mut s.body, Some(name), Some(say!("a transition section")))
-                }
+                ChartItem::Pre(body, _) | ChartItem::Post(body, _) => self.body_of(body, env),
+                ChartItem::Action(a) => self.body_of(&mut a.body, env),
+                ChartItem::Section(s) => self.block(&mut s.body, env, Some(say!("a transition section"))),
                 ChartItem::Var(_) => {}
             }
             items.push(own);
         }
-        Chart {
+        let mut made = Chart {
             kind: chart.kind,
-            name: chart.name.clone(),
+            name: name.clone(),
             params: chart.params.clone(),
+            block: None,
             comment: chart.comment.clone(),
             every: chart.every,
             items,
             at: chart.at,
-        }
+        };
+        self.chart_names(&mut made, env);
+        made
     }
 
-    fn action(&mut self, action: &mut Action, chart: &str) {
-        let env = Env::of(Some(chart));
+    fn action(&mut self, action: &mut Action, env: &Env<'_, 'd>) {
         match &mut action.kind {
             ActionKind::Qualified { time, target, condition, .. } => {
-                time.iter_mut().chain(condition).for_each(|e| self.expr(e, &env));
-                self.action_target(target, action.at.0, chart);
+                time.iter_mut().chain(condition).for_each(|e| self.expr(e, env));
+                self.action_target(target, action.at.0, env);
             }
             ActionKind::OnEvent { event, work } => {
-                self.expr(event, &env);
-                self.work(work, chart);
+                self.expr(event, env);
+                self.work(work, env);
             }
             ActionKind::EachScan { work, condition } => {
-                self.work(work, chart);
-                condition.iter_mut().for_each(|e| self.expr(e, &env));
+                self.work(work, env);
+                condition.iter_mut().for_each(|e| self.expr(e, env));
             }
             ActionKind::Order(_) | ActionKind::Comment(_) => {}
         }
     }
 
-    fn action_target(&mut self, target: &mut Target, at: crate::Span, chart: &str) {
+    fn action_target(&mut self, target: &mut Target, at: crate::Span, env: &Env<'_, 'd>) {
         let mut e = match target {
             Target::Path(path) => {
                 let kind = ExprKind::Path(Path { names: std::mem::take(&mut path.names) });
                 Expr { kind, at: at.into() }
             }
             Target::Element(element) => (**element).clone(),
-            Target::Work(work) => return self.work(work, chart),
+            Target::Work(work) => return self.work(work, env),
             Target::Direct(..) => return,
         };
-        self.target(&mut e, &Env::of(Some(chart)));
+        self.target(&mut e, env);
         *target = match e.kind {
             ExprKind::Path(path) => Target::Path(path),
             _ => Target::Element(Box::new(e)),
         };
     }
 
-    fn work(&mut self, work: &mut Work, chart: &str) {
+    fn work(&mut self, work: &mut Work, env: &Env<'_, 'd>) {
         match work {
-            Work::Block(block) => self.block(block, Some(chart), None),
+            Work::Block(block) => self.block(block, env, None),
             Work::Single(s) => {
                 let at = s.at;
-                let list = self.statements(vec![(**s).clone()], &Env::of(Some(chart)));
+                let list = self.statements(vec![(**s).clone()], env);
                 *work = match <[Stmt; 1]>::try_from(list) {
                     Ok([only]) if matches!(only.kind, StmtKind::Assign { .. } | StmtKind::Call(..)) => {
                         Work::Single(Box::new(only))
@@ -127,12 +140,12 @@ impl<'d> Composition<'d> {
         }
     }
 
-    fn body_of(&mut self, body: &mut Body, chart: Option<&str>) {
+    fn body_of(&mut self, body: &mut Body, env: &Env<'_, 'd>) {
         match body {
-            Body::St(block) => self.block(block, chart, None),
+            Body::St(block) => self.block(block, env, None),
             Body::Other(_, _, block) => {
                 let before = block.clone();
-                self.block(block, chart, None);
+                self.block(block, env, None);
                 if *block != before {
                     // The text of the other language no longer says what the statements do.
                     *body = Body::St(std::mem::take(block));
@@ -141,9 +154,9 @@ impl<'d> Composition<'d> {
         }
     }
 
-    fn block(&mut self, block: &mut Block, chart: Option<&str>, uncallable: Option<Said>) {
+    fn block(&mut self, block: &mut Block, env: &Env<'_, 'd>, uncallable: Option<Said>) {
         let locals = block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone()).collect();
-        let env = Env::Outer { chart, locals, uncallable };
+        let env = env.within(locals, uncallable);
         block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.expr(e, &env));
         block.statements = self.statements(std::mem::take(&mut block.statements), &env);
     }
@@ -234,11 +247,7 @@ impl<'d> Composition<'d> {
         for item in &document.items {
             let Item::Composed(c) = item else { continue };
             let name = &c.name.text;
-            if c.body.is_none()
-                || self.used.contains(&**name)
-                || name.is_empty()
-                || self.wrong.contains(&**name)
-            {
+            if !c.block || self.used.contains(&**name) || name.is_empty() || self.wrong.contains(&**name) {
                 continue;
             }
             let what = say!("the function block `{name}` has no instance, so it never runs");

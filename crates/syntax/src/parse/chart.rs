@@ -25,18 +25,19 @@ impl Parser<'_> {
             _ => ChartKind::Chart,
         };
         let start = self.cur.start;
-        let (name, params, comment, every) = self.head(|p| {
+        let (name, params, block, comment, every) = self.head(|p| {
             p.bump();
             let name = p.name(say!("the name of the chart"));
             let params = if p.at_call() { p.params() } else { Vec::new() };
-            (name, params, p.comment_if(), p.period(kind))
+            let block = p.eat_word("of").then(|| p.name(say!("the name of a function block")));
+            (name, params, block, p.comment_if(), p.period(kind))
         });
         let open = self.here();
         let mut items = Vec::new();
         if self.expect(Tok::LBrace, say!("`{{` and the steps of the chart")) || self.at_chart_start() {
             self.chart_items(&mut items, open);
         }
-        Chart { kind, name, params, comment, every, items, at: self.since(start).into() }
+        Chart { kind, name, params, block, comment, every, items, at: self.since(start).into() }
     }
 
     /// `every 20ms`.

@@ -5,8 +5,7 @@ use crate::lexer::Tok;
 use crate::words;
 use g7_iec::constant;
 use g7_model::{
-    Arg, Block, Body, Composed, Expr, ExprKind, Name, Path, Said, Type, VarDecl, VarKind, codes, say,
-    words as table,
+    Arg, Body, Composed, Expr, ExprKind, Name, Path, Said, Type, VarDecl, VarKind, codes, say, words as table,
 };
 
 impl Parser<'_> {
@@ -62,15 +61,8 @@ impl Parser<'_> {
             }
             self.close(Tok::RBrace, say!("`}}` after the function block"), open);
         }
-        if body.is_none() {
-            let at = made.name.at.0;
-            let what = say!("the function block `{}` has no body", made.name.text);
-            self.problem_help(&codes::EXPECTED, at, what, say!("write `body {{ … }}` behind its variables"));
-        }
         made.at = self.since(start).into();
-        let empty = Block { locals: Vec::new(), statements: Vec::new(), at: made.at };
-        made.body = Some(body.unwrap_or(Body::St(empty)));
-        made
+        Composed { block: true, body, ..made }
     }
 
     fn member_of_block(&mut self, made: &mut Composed, body: &mut Option<Body>) {
@@ -109,7 +101,7 @@ impl Parser<'_> {
         let name = self.name(what);
         let comment = self.comment_if();
         let at = self.since(start).into();
-        Composed { name, comment, members: Vec::new(), inouts: Vec::new(), body: None, at }
+        Composed { name, comment, members: Vec::new(), inouts: Vec::new(), block: false, body: None, at }
     }
 
     fn more_members(&mut self) -> bool {

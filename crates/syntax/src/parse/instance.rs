@@ -2,7 +2,7 @@
 
 use super::Parser;
 use crate::lexer::{Tok, Token};
-use g7_model::{Instance, InstanceNames, Name, Said, say};
+use g7_model::{Instance, InstanceNames, Name, Said, Span, say};
 
 impl Parser<'_> {
     /// `instance Axis[1..6](speed := 2.5)`, `instance Lift : Axis(7)`.
@@ -32,9 +32,21 @@ impl Parser<'_> {
         named && matches!(self.lexer.ahead(name).token().kind, Tok::LBracket | Tok::Colon)
     }
 
-    /// The name of a chart, which can be an instance of a range: `Axis[3]`, `Axis[i + 1]`.
+    /// The name of a chart, which can be an instance of a range, `Axis[3]`, `Axis[i + 1]`, or that of an instance of
+    /// a function block, `left.Cycle`, `gripper[2].Cycle`.
     pub(super) fn chart_name(&mut self, what: Said) -> Name {
-        let name = self.name(what);
+        let first = self.name(what);
+        let mut name = self.numbered_chart(first);
+        while self.eat(Tok::PathDot) || self.prev.kind == Tok::RBracket && self.dot_of_member() {
+            let member = self.member();
+            let member = self.numbered_chart(member);
+            let at = Span { end: self.prev.end, ..name.at.0 };
+            name = Name::new(format!("{}.{}", name.text, member.text), at);
+        }
+        name
+    }
+
+    fn numbered_chart(&mut self, name: Name) -> Name {
         if !self.at(Tok::LBracket) || self.cur.start != self.prev.end {
             return name;
         }

@@ -19,6 +19,10 @@ impl Printer<'_> {
         if !chart.params.is_empty() {
             self.params(&chart.params);
         }
+        if let Some(block) = &chart.block {
+            self.push(" of ");
+            self.name(&block.text);
+        }
         self.comment(chart.comment.as_deref());
         self.time_clause("every", chart.every, chart.at.0);
         self.push(" ");
@@ -81,7 +85,7 @@ impl Printer<'_> {
         self.name(&step.name.text);
         if let StepKind::Macro(expansion) = &step.kind {
             self.push(" = ");
-            self.chart_name(&expansion.text);
+            self.chart_path(&expansion.text);
         }
         self.push(if step.linked { "*" } else { "" });
         self.comment(step.comment.as_deref());
@@ -185,7 +189,7 @@ impl Printer<'_> {
             Order::Enclose(name) => ("enclose ", name),
         };
         self.push(word);
-        self.chart_name(&name.text);
+        self.chart_path(&name.text);
         let Order::Force(_, situation) = order else { return };
         self.push(" := ");
         match situation {

@@ -6,7 +6,7 @@ use g7_model::{Body, Composed, Expr, Path, Span, VarDecl, element_parts};
 
 impl Printer<'_> {
     pub(super) fn composed(&mut self, composed: &Composed) {
-        let block = composed.body.is_some();
+        let block = composed.block;
         self.push(if block { "function block " } else { "struct " });
         self.name(&composed.name.text);
         self.comment(composed.comment.as_deref());

@@ -17,7 +17,7 @@ use crate::lexer::{name_continue, name_start};
 use crate::quote;
 use crate::{LineIndex, words};
 use g7_iec::constant;
-use g7_model::{Document, Expr, Nanos, Note, Span, Stmt, instance_of};
+use g7_model::{Document, Expr, Nanos, Note, Span, Stmt, chart_in, instance_of};
 
 /// The largest width of a line that is joined from several parts.
 const WIDTH: usize = 100;
@@ -252,11 +252,25 @@ impl<'a> Printer<'a> {
         }
     }
 
-    /// The name of a chart where it is used: that of an instance has an index.
+    /// The first name of a path: that of an instance of a chart has an index.
     fn chart_name(&mut self, name: &str) {
         let Some((chart, _)) = instance_of(name) else { return self.name(name) };
         self.name(chart);
         self.push(&name[chart.len()..]);
+    }
+
+    /// The name of a chart in an order or a macro-step, which can be that of an instance of a function block:
+    /// `gripper[2].Cycle`.
+    fn chart_path(&mut self, name: &str) {
+        let bare = |part: &str| is_plain(chart_in(part));
+        // A name in back-ticks can have any text.
+        if !name.contains('.') || !name.split('.').all(bare) {
+            return self.chart_name(name);
+        }
+        for (n, part) in name.split('.').enumerate() {
+            self.push(if n > 0 { "." } else { "" });
+            self.chart_name(part);
+        }
     }
 
     /// A name in a place where words of the language are allowed.

@@ -1,7 +1,7 @@
 //! Random documents.
 
 use crate::expressions::{
-    args, block, chart_name, direct, duration, element, expr, fields, name, path, simple_stmt, text, ty,
+    args, block, chart_path, direct, duration, element, expr, fields, name, path, simple_stmt, text, ty,
     values,
 };
 use crate::world;
@@ -91,15 +91,18 @@ fn composed() -> impl Strategy<Value = Composed> {
     let member = || variable().prop_map(|v| VarDecl { address: None, inverted: false, safe: None, ..v });
     let of_structure = member().prop_map(|v| VarDecl { kind: VarKind::Var, retain: false, ..v });
     let inout = member().prop_map(|v| VarDecl { kind: VarKind::Var, retain: false, init: None, ..v });
-    let structure = prop::collection::vec(of_structure, 0..3).prop_map(|members| (members, Vec::new(), None));
-    let block = (prop::collection::vec(member(), 0..3), prop::collection::vec(inout, 0..2), body())
-        .prop_map(|(members, inouts, body)| (members, inouts, Some(body)));
+    let structure =
+        prop::collection::vec(of_structure, 0..3).prop_map(|members| (members, Vec::new(), false, None));
+    let block =
+        (prop::collection::vec(member(), 0..3), prop::collection::vec(inout, 0..2), prop::option::of(body()))
+            .prop_map(|(members, inouts, body)| (members, inouts, true, body));
     (name(), comment(), prop_oneof![structure.boxed(), block.boxed()]).prop_map(
-        |(name, comment, (members, inouts, body))| Composed {
+        |(name, comment, (members, inouts, block, body))| Composed {
             name,
             comment,
             members,
             inouts,
+            block,
             body,
             at: at(),
         },
@@ -131,11 +134,11 @@ fn order() -> impl Strategy<Value = Order> {
     let situation =
         prop_oneof![Just(Situation::Init), Just(Situation::Current), names(0..3).prop_map(Situation::Steps),];
     prop_oneof![
-        (chart_name(), situation).prop_map(|(n, s)| Order::Force(n, s)),
-        chart_name().prop_map(Order::Enable),
-        chart_name().prop_map(Order::Mask),
-        chart_name().prop_map(Order::Call),
-        chart_name().prop_map(Order::Enclose),
+        (chart_path(), situation).prop_map(|(n, s)| Order::Force(n, s)),
+        chart_path().prop_map(Order::Enable),
+        chart_path().prop_map(Order::Mask),
+        chart_path().prop_map(Order::Call),
+        chart_path().prop_map(Order::Enclose),
     ]
 }
 
@@ -239,12 +242,12 @@ fn chart_item() -> impl Strategy<Value = ChartItem> {
 fn chart() -> impl Strategy<Value = Chart> {
     let kind = prop::sample::select(vec![ChartKind::Chart, ChartKind::Expansion, ChartKind::Task]);
     let items = prop::collection::vec(chart_item(), 0..6);
-    let params = prop::collection::vec(param(), 0..3);
+    let params = (prop::collection::vec(param(), 0..3), prop::option::weighted(0.2, name()));
     (kind, name(), params, comment(), prop::option::of(duration()), items).prop_map(
-        |(kind, name, params, comment, every, mut items)| {
+        |(kind, name, (params, block), comment, every, mut items)| {
             chain(&mut items);
             let every = every.filter(|_| kind == ChartKind::Chart);
-            Chart { kind, name, params, comment, every, items, at: at() }
+            Chart { kind, name, params, block, comment, every, items, at: at() }
         },
     )
 }

@@ -81,6 +81,15 @@ pub(crate) fn chart_name() -> impl Strategy<Value = Name> {
     })
 }
 
+/// The name of a chart in an order: that of an instance of a function block is a path.
+pub(crate) fn chart_path() -> impl Strategy<Value = Name> {
+    prop_oneof![
+        4 => chart_name(),
+        1 => ("[a-z]{1,3}(\\[-?[1-9][0-9]?\\])?", "[A-Z][a-z]{0,3}(\\[[1-9]\\])?")
+            .prop_map(|(home, name)| Name::new(format!("{home}.{name}"), Span::default())),
+    ]
+}
+
 pub(crate) fn path() -> impl Strategy<Value = Path> {
     let first = prop_oneof![3 => name(), 1 => chart_name()];
     (first, prop::collection::vec(name(), 0..3)).prop_map(|(first, mut names)| {
