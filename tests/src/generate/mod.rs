@@ -3,6 +3,7 @@
 //! visit many situations.
 
 mod body;
+mod block_charts;
 mod composed;
 mod instances;
 mod named;

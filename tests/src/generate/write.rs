@@ -5,6 +5,7 @@ use g7_model::{Lasting, ProfileName, Qualifier, Type};
 
 use super::Weights;
 use super::body::{self, Driven, Targets};
+use super::block_charts::block_charts;
 use super::composed::composed;
 use super::instances::instances;
 use super::named::named;
@@ -74,6 +75,7 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
     }
     instances(rng, &outside, &mut out);
     composed(rng, &outside, &mut out);
+    block_charts(rng, &outside, &mut out);
     named(rng, &outside, &mut out);
     out
 }
