@@ -9,3 +9,4 @@ pub mod matiec;
 pub mod mix;
 pub mod rows;
 pub mod shape;
+pub mod tools;

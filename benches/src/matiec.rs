@@ -7,6 +7,7 @@ use std::process::Command;
 use g7_peers::Matiec;
 
 use crate::shape::Shape;
+use crate::tools::run;
 
 /// The results for one program: ns a scan, and the situations it visited.
 #[derive(Clone, Debug)]
@@ -90,12 +91,4 @@ pub fn measure(matiec: &Matiec, folder: &Path, shape: Shape) -> Result<Measured,
     let (moving, idle) = number().zip(number()).ok_or("the timer printed nothing")?;
     let digest = out.split_whitespace().nth(2).and_then(|w| w.parse().ok()).ok_or("no digest")?;
     Ok(Measured { moving, idle, digest })
-}
-
-fn run(command: &mut Command) -> Result<String, String> {
-    let out = command.output().map_err(|e| format!("{}: {e}", command.get_program().display()))?;
-    if out.status.success() {
-        return Ok(String::from_utf8_lossy(&out.stdout).into_owned());
-    }
-    Err(format!("{} failed:\n{}", command.get_program().display(), String::from_utf8_lossy(&out.stderr)))
 }

@@ -9,6 +9,7 @@ use std::process::Command;
 
 use g7_benches::matiec::{self, LOOKED_AT, Measured};
 use g7_benches::shape::Shape;
+use g7_benches::tools::run;
 use g7_codegen::{Language, Options, Style};
 use g7_model::FileId;
 use g7_peers::Matiec;
@@ -125,12 +126,4 @@ fn ours(folder: &Path, shape: Shape, style: Style, copied: bool) -> Result<Measu
     let (moving, idle) = number().zip(number()).ok_or("the timer printed nothing")?;
     let digest = out.split_whitespace().nth(2).and_then(|w| w.parse().ok()).ok_or("no digest")?;
     Ok(Measured { moving, idle, digest })
-}
-
-fn run(command: &mut Command) -> Result<String, String> {
-    let out = command.output().map_err(|e| format!("{}: {e}", command.get_program().display()))?;
-    if out.status.success() {
-        return Ok(String::from_utf8_lossy(&out.stdout).into_owned());
-    }
-    Err(format!("{} failed:\n{}", command.get_program().display(), String::from_utf8_lossy(&out.stderr)))
 }

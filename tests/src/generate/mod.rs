@@ -2,8 +2,8 @@
 //! structure and conditions are chosen so that most charts run for many scans without a fault and
 //! visit many situations.
 
-mod body;
 mod block_charts;
+mod body;
 mod composed;
 mod instances;
 mod named;

@@ -4,8 +4,8 @@
 use g7_model::{Lasting, ProfileName, Qualifier, Type};
 
 use super::Weights;
-use super::body::{self, Driven, Targets};
 use super::block_charts::block_charts;
+use super::body::{self, Driven, Targets};
 use super::composed::composed;
 use super::instances::instances;
 use super::named::named;
