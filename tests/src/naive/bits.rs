@@ -3,7 +3,7 @@
 
 use g7_model::{BinaryOp, Type};
 
-use super::value::{Run, Typed, Value, bad, common};
+use super::value::{NaiveFault, Run, Typed, Value, bad, common};
 
 /// The number of bits of a type.
 pub(super) fn width(ty: Type) -> u32 {
@@ -54,4 +54,33 @@ pub(super) fn joined(op: BinaryOp, a: &Typed, b: &Typed) -> Option<Run<Typed>> {
 pub(super) fn complement(x: &Typed) -> Option<Run<Typed>> {
     let ty = x.ty.filter(|ty| ty.is_bits())?;
     Some(x.whole().map(|n| Typed::of(ty, Value::Int(number(ty, |k| !bit(n, k))))))
+}
+
+/// `WORD_BCD_TO_UINT` and `UINT_TO_BCD_WORD`, if the name is one of these: digit by digit (IEC 61131-3:2003, table 22).
+pub(super) fn decimal(name: &str, x: &Typed) -> Option<Run<Typed>> {
+    let named = |name: &str| Type::named(name.trim_matches('_'));
+    if let Some((from, to)) = name.split_once("BCD_TO_") {
+        let (from, to) = (named(from).or(x.ty)?, named(to)?);
+        let digits = |n: i128| (0..width(from) / 4).rev().map(move |k| (n >> (4 * k)) % 16);
+        return Some(x.to(from).and_then(|v| {
+            let Value::Int(n) = v else { return bad("digits of no number") };
+            let value = digits(n).fold(0, |all, digit| 10 * all + digit);
+            let fits = to.bounds().is_some_and(|(_, most)| value <= most);
+            let right = fits && digits(n).all(|digit| digit < 10);
+            if right { Ok(Typed::of(to, Value::Int(value))) } else { Err(NaiveFault::Index) }
+        }));
+    }
+    let (from, to) = name.split_once("_TO_BCD")?;
+    let from = named(from)?;
+    let to = named(to).or(from.bit_string())?;
+    Some(x.to(from).and_then(|v| {
+        let Value::Int(mut rest) = v else { return bad("digits of no number") };
+        let (mut all, mut place) = (0, 0);
+        while rest > 0 {
+            all += (rest % 10) << place;
+            (rest, place) = (rest / 10, place + 4);
+        }
+        let right = rest == 0 && place <= width(to);
+        if right { Ok(Typed::of(to, Value::Int(all))) } else { Err(NaiveFault::Index) }
+    }))
 }

@@ -16,6 +16,11 @@ pub(super) fn call(name: &str, args: &[Typed]) -> Run<Typed> {
             _ => bad(format!("{name} takes one argument")),
         };
     }
+    if let [x] = args
+        && let Some(value) = bits::decimal(&name, x)
+    {
+        return value;
+    }
     match (&*name, args) {
         ("ABS", [x]) => {
             let zero = Typed { ty: None, v: Value::Int(0) };

@@ -16,12 +16,13 @@ fn all(ty: Type) -> i128 {
     ty.bounds().map_or(0, |(_, most)| most)
 }
 
-fn constant(n: i128, ty: Type, at: Span) -> Expr {
+/// A constant of a whole type or a bit string.
+pub(super) fn constant(n: i128, ty: Type, at: Span) -> Expr {
     Expr { kind: ExprKind::Const(Value::Int(n)), ty, at }
 }
 
 /// Two bit strings of one type, bit by bit; constants are computed at once.
-fn joined(f: Builtin, a: Expr, b: Expr, at: Span) -> Expr {
+pub(super) fn joined(f: Builtin, a: Expr, b: Expr, at: Span) -> Expr {
     let ty = a.ty;
     if let (ExprKind::Const(Value::Int(x)), ExprKind::Const(Value::Int(y))) = (&a.kind, &b.kind) {
         let n = match f {

@@ -2,6 +2,7 @@
 
 use g7_model::{Arg, Name, Nanos, Path, Problem, Said, Span, StandardFunction, Type, codes, say};
 
+use super::bcd::Bcd;
 use super::constant;
 use super::resolver::{Resolver, Role, nearest};
 use super::scopes::Entity;
@@ -38,6 +39,9 @@ impl Resolver<'_, '_> {
         }
         if let Some((from, to)) = called.and_then(|n| conversion(n)) {
             return self.call_conversion(from, to, name, args, at);
+        }
+        if let Some(bcd) = called.and_then(|n| Bcd::named(n)) {
+            return self.call_bcd(bcd, name, args, hint, at);
         }
         self.read_all(args);
         self.not_a_function(path)
@@ -149,6 +153,19 @@ impl Resolver<'_, '_> {
         Some(ordered)
     }
 
+    /// The argument of a conversion.
+    pub(super) fn only_argument<'a>(&mut self, name: &Name, args: &'a [Arg], at: Span) -> Option<&'a Arg> {
+        let Some(ordered) = self.arrange(name, args, |n| (n == "IN").then_some(0), 1) else {
+            self.read_all(args);
+            return None;
+        };
+        let Some(arg) = ordered.first().copied().flatten() else {
+            let what = say!("`{}` takes one value", name.text);
+            return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
+        };
+        Some(arg)
+    }
+
     /// `DINT_TO_INT(n)`; TIME is converted in milliseconds.
     fn call_conversion(
         &mut self,
@@ -158,14 +175,7 @@ impl Resolver<'_, '_> {
         args: &[Arg],
         at: Span,
     ) -> Option<Typed> {
-        let Some(ordered) = self.arrange(name, args, |n| (n == "IN").then_some(0), 1) else {
-            self.read_all(args);
-            return None;
-        };
-        let Some(arg) = ordered.first().copied().flatten() else {
-            let what = say!("`{}` takes one value", name.text);
-            return self.report(Problem::new(&codes::WRONG_ARGUMENTS, at, what));
-        };
+        let arg = self.only_argument(name, args, at)?;
         let want = if matches!(from, Type::String(_)) { Type::String(g7_engine::TEXT) } else { from };
         let e = self.value(&arg.value, want)?;
         match (from, to) {

@@ -16,6 +16,7 @@
 
 mod actions;
 mod arrays;
+mod bcd;
 mod bits;
 mod bodies;
 mod call;

@@ -220,6 +220,27 @@ fn bit_strings() {
     ]);
 }
 
+/// IEC 61131-3:2003, table 22; decision 57.
+#[test]
+fn decimal_digits() {
+    check(&[
+        ("WORD_BCD_TO_UINT(wo)", "WORD_BCD_TO_UINT(wo) : UINT"),
+        ("BCD_TO_INT(bs)", "BYTE_BCD_TO_INT(bs) : INT"),
+        ("BCD_TO_INT(16#1987)", "1987 : INT"),
+        ("bcd_to_sint(BYTE#16#99)", "99 : SINT"),
+        ("INT_TO_BCD(n)", "INT_TO_BCD_WORD(n) : WORD"),
+        ("INT_TO_BCD_BYTE(n)", "INT_TO_BCD_BYTE(n) : BYTE"),
+        ("UINT_TO_BCD_WORD(1987)", "6535 : WORD"),
+        ("BCD_TO_INT(16#1A)", "G0212"),
+        ("WORD_BCD_TO_SINT(16#128)", "G0212"),
+        ("INT_TO_BCD_BYTE(100)", "G0212"),
+        ("INT_TO_BCD_BYTE(-1)", "G0212"),
+        ("BCD_TO_INT(n)", "G0209"),
+        ("WORD_BCD_TO_UINT()", "G0215"),
+        ("INT_BCD_TO_INT(n)", "G0202"),
+    ]);
+}
+
 #[test]
 fn conversions() {
     check(&[
