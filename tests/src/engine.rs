@@ -98,7 +98,7 @@ pub(crate) fn value(ty: Type, words: &[u64]) -> Value {
         | Type::Lword => Value::Int(word.into()),
         Type::Real => Value::Real(f32::from_bits(word as u32)),
         Type::Lreal => Value::Lreal(f64::from_bits(word)),
-        Type::Time => Value::Time(word as i64),
+        Type::Time | Type::Moment(_) => Value::Time(word as i64),
         Type::String(_) => {
             let bytes: Vec<u8> =
                 words.iter().skip(1).flat_map(|w| w.to_le_bytes()).take(word as usize).collect();

@@ -52,7 +52,7 @@ impl Chance {
             | Type::Word
             | Type::Dword
             | Type::Lword => vec![n % 12],
-            Type::Time => vec![(n % 40) * 50_000_000],
+            Type::Time | Type::Moment(_) => vec![(n % 40) * 50_000_000],
             Type::String(room) => {
                 let text: String = "grafcet".chars().take((n % 8).min(room.into()) as usize).collect();
                 write_text(&text, v.words() / v.elements.max(1))
@@ -77,7 +77,7 @@ fn told(ty: Type, words: &[u64]) -> Value {
         | Type::Word
         | Type::Dword
         | Type::Lword => json!(word),
-        Type::Time => json!(word as i64 as f64 / 1e9),
+        Type::Time | Type::Moment(_) => json!(word as i64 as f64 / 1e9),
         Type::String(_) => json!(read_text(words, 0)),
         _ => json!(word as i64),
     }
@@ -89,7 +89,7 @@ fn seen(ty: Type, words: &[u64]) -> Value {
     let real = match ty {
         Type::Real => f64::from(f32::from_bits(word as u32)),
         Type::Lreal => f64::from_bits(word),
-        Type::Time => word as i64 as f64 / 1e9,
+        Type::Time | Type::Moment(_) => word as i64 as f64 / 1e9,
         _ => return told(ty, words),
     };
     json!(if real.is_nan() { "NaN".to_owned() } else { format!("{:016x}", real.to_bits()) })

@@ -57,7 +57,7 @@ pub(crate) fn num(ty: Type) -> Option<Num> {
         Type::Sint => Num::I8,
         Type::Int => Num::I16,
         Type::Dint => Num::I32,
-        Type::Lint | Type::Time => Num::I64,
+        Type::Lint | Type::Time | Type::Moment(_) => Num::I64,
         Type::Usint | Type::Byte => Num::U8,
         Type::Uint | Type::Word => Num::U16,
         Type::Udint | Type::Dword => Num::U32,

@@ -318,6 +318,7 @@ impl Symbols {
             Some(Holds::Real) if ty == Type::Real => format!("{:?}", f32::from_bits(word as u32)),
             Some(Holds::Real) => format!("{:?}", f64::from_bits(word)),
             Some(Holds::Time) => Duration(word as i64).to_string(),
+            Some(Holds::Moment(moment)) => moment.literal(Nanos::new(word as i64)),
             Some(Holds::Text) => quoted(words),
             None => String::new(),
         }

@@ -107,7 +107,7 @@ impl<'a> Make<'a> {
             };
             let init = words.get(..count as usize).unwrap_or_default().into();
             let what = What::Variable(v.addr);
-            let (ty, elements, retain) = (v.ty, v.elements, v.retain);
+            let (ty, elements, retain) = (v.ty.stored(), v.elements, v.retain);
             let memory = self.add(Memory { what, class, ty, elements, init, retain });
             for word in v.addr.0..v.addr.0 + v.words() {
                 self.slots.entry(word).or_insert(Slot { memory, start: v.addr.0, elements });

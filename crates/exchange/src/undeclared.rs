@@ -82,6 +82,7 @@ fn type_of(e: &Expr) -> Option<Type> {
         ExprKind::Literal(Literal::Int(_, ty)) => Some(ty.unwrap_or(Type::Dint)),
         ExprKind::Literal(Literal::Real(_, ty)) => Some(ty.unwrap_or(Type::Real)),
         ExprKind::Literal(Literal::Time(_)) => Some(Type::Time),
+        ExprKind::Literal(Literal::Moment(moment, _)) => Some(Type::Moment(*moment)),
         ExprKind::Literal(Literal::Str(_)) => Some(Type::STRING),
         ExprKind::Unary(UnaryOp::Neg, a) => type_of(a).or(Some(Type::Dint)),
         ExprKind::Binary(

@@ -1,10 +1,17 @@
 //! Constants of the languages (numbers, durations and strings): how they are read and written.
 
-use g7_model::{Literal, Nanos, Said, Type, say};
+use g7_model::{Literal, Moment, Nanos, Said, Type, say};
 use std::fmt::Write;
 
-/// The type before the `#` of a literal, in upper or lower case.
+/// The type before the `#` of a literal, in upper or lower case: of `INT#5`, `T#5s`, `D#2026-11-28`.
 pub fn literal_type(word: &str) -> Option<Type> {
+    let upper = word.to_ascii_uppercase();
+    if matches!(&*upper, "T" | "TIME" | "LT" | "LTIME") {
+        return Some(Type::Time);
+    }
+    if let Some(moment) = Moment::of_literal(&upper) {
+        return Some(Type::Moment(moment));
+    }
     let ty = type_named(word)?;
     (ty.is_integer() || ty.is_bits() || ty.is_real() || ty == Type::Bool).then_some(ty)
 }
@@ -54,10 +61,16 @@ pub fn real(text: &str) -> Result<Box<str>, Said> {
     }
 }
 
-/// `INT#5`, `REAL#2`, `BOOL#1`.
+/// `INT#5`, `REAL#2`, `BOOL#1`, `D#2026-11-28`.
 pub fn typed(text: &str) -> Result<Literal, Said> {
     let (word, value) = text.split_once('#').ok_or(say!("`#` is missing"))?;
     let ty = literal_type(word).ok_or(say!("this type has no such literals"))?;
+    if let Type::Moment(moment) = ty {
+        return moment.read(value).map(|time| Literal::Moment(moment, time));
+    }
+    if ty == Type::Time {
+        return duration(value).map(Literal::Time);
+    }
     if ty == Type::Bool {
         return match value {
             "1" | "TRUE" | "true" => Ok(Literal::Bool(true)),

@@ -335,7 +335,7 @@ fn word(text: &str, ty: Type) -> u64 {
             ExprKind::Literal(Literal::Bool(b)) => (0.0, i128::from(*b)),
             ExprKind::Literal(Literal::Int(n, _)) => (*n as f64, *n),
             ExprKind::Literal(Literal::Real(text, _)) => (text.parse().ok()?, 0),
-            ExprKind::Literal(Literal::Time(t)) => (0.0, i128::from(t.count())),
+            ExprKind::Literal(Literal::Time(t) | Literal::Moment(_, t)) => (0.0, i128::from(t.count())),
             ExprKind::Unary(UnaryOp::Neg, inner) => {
                 let (real, whole) = number(inner)?;
                 (-real, -whole)

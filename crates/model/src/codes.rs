@@ -43,7 +43,7 @@ codes! {
     UNCLOSED = "G0003" Error "a bracket, text or note that is never closed" "the .g7 format";
     EXPECTED = "G0004" Error "something else was expected here" "the .g7 format";
     BAD_NUMBER = "G0005" Error "a number that cannot be read" "IEC 61131-3:2003, 2.2.1";
-    BAD_DURATION = "G0006" Error "a duration that cannot be read" "IEC 61131-3:2003, 2.2.3";
+    BAD_DURATION = "G0006" Error "a duration or a date that cannot be read" "IEC 61131-3:2003, 2.2.3";
     TOO_DEEP = "G0007" Error "nested too deeply" "the .g7 format";
     TOO_LARGE = "G0008" Error "the file is too large" "the .g7 format";
     UNKNOWN_WORD = "G0009" Error "a word the language does not have" "the .g7 format";

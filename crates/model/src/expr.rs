@@ -1,6 +1,6 @@
 //! Expressions as written: receptivities, conditions, right-hand sides.
 
-use crate::{BinaryOp, Name, Nanos, Place, Type, UnaryOp, slot_of};
+use crate::{BinaryOp, Moment, Name, Nanos, Place, Type, UnaryOp, slot_of};
 
 /// An expression with its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,6 +56,8 @@ pub enum Literal {
     Real(Box<str>, Option<Type>),
     /// A duration.
     Time(Nanos),
+    /// A date, a time of day, or both.
+    Moment(Moment, Nanos),
     /// Text, escapes undone.
     Str(Box<str>),
 }
@@ -85,6 +87,7 @@ impl Expr {
             Type::Bool | Type::Fb(_) => Literal::Bool(false),
             Type::Real | Type::Lreal => Literal::Real("0.0".into(), None),
             Type::Time => Literal::Time(Nanos::ZERO),
+            Type::Moment(moment) => Literal::Moment(moment, Nanos::ZERO),
             Type::String(_) => Literal::Str("".into()),
             _ => Literal::Int(0, None),
         };

@@ -74,6 +74,10 @@ pub enum StandardFunction {
     Replace,
     /// FIND.
     Find,
+    /// CONCAT_DATE_TOD (table 30).
+    ConcatDateTod,
+    /// DAY_OF_WEEK (IEC 61131-3:2013, table 36).
+    DayOfWeek,
 }
 
 /// A row of the table of standard functions.
@@ -97,7 +101,7 @@ impl StandardFunction {
     pub const MOST: usize = 32;
 
     /// All of them, in the order of the standard's tables.
-    pub const ALL: [StandardFunction; 47] = [
+    pub const ALL: [StandardFunction; 49] = [
         StandardFunction::Trunc,
         StandardFunction::Abs,
         StandardFunction::Sqrt,
@@ -145,6 +149,8 @@ impl StandardFunction {
         StandardFunction::Delete,
         StandardFunction::Replace,
         StandardFunction::Find,
+        StandardFunction::ConcatDateTod,
+        StandardFunction::DayOfWeek,
     ];
 
     /// The row of a function.
@@ -286,14 +292,35 @@ impl StandardFunction {
                     "lugar de um texto num texto",
                 ],
             ),
+            StandardFunction::ConcatDateTod => (
+                "CONCAT_DATE_TOD",
+                TWO,
+                ["a day with a time of day", "un jour et une heure du jour", "um dia com uma hora do dia"],
+            ),
+            StandardFunction::DayOfWeek => (
+                "DAY_OF_WEEK",
+                ONE,
+                [
+                    "day of the week, 0 for Sunday",
+                    "jour de la semaine, 0 pour dimanche",
+                    "dia da semana, 0 para domingo",
+                ],
+            ),
         };
         FunctionRow { name, inputs, does }
     }
 
-    /// The function of this name, in upper or lower case. Sums and products of TIME have names of
-    /// their own besides (table 30; IEC 61131-3:2013, table 35).
+    /// The function of this name, in upper or lower case. Sums and products of TIME, and sums and differences of dates and
+    /// times of day, have names of their own besides (table 30; IEC 61131-3:2013, table 35).
     pub fn named(name: &str) -> Option<StandardFunction> {
-        const OF_TIME: [(&str, BinaryOp); 6] = [
+        const OF_TIME: [(&str, BinaryOp); 13] = [
+            ("ADD_TOD_TIME", BinaryOp::Add),
+            ("ADD_DT_TIME", BinaryOp::Add),
+            ("SUB_DATE_DATE", BinaryOp::Sub),
+            ("SUB_TOD_TIME", BinaryOp::Sub),
+            ("SUB_TOD_TOD", BinaryOp::Sub),
+            ("SUB_DT_TIME", BinaryOp::Sub),
+            ("SUB_DT_DT", BinaryOp::Sub),
             ("ADD_TIME", BinaryOp::Add),
             ("SUB_TIME", BinaryOp::Sub),
             ("MULTIME", BinaryOp::Mul),

@@ -6,10 +6,11 @@
 use crate::{
     Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
     ChartItem, ChartKind, Composed, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames,
-    Item, Layout, Limits, Literal, Local, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path, Place,
-    PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate, Said,
-    Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target, TargetPlc,
-    TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, VarDecl, VarKind, View, Work,
+    Item, Layout, Limits, Literal, Local, Moment, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path,
+    Place, PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate,
+    Said, Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target,
+    TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, VarDecl, VarKind, View,
+    Work,
 };
 
 /// A part of a document that has places in a text.
@@ -101,7 +102,7 @@ macro_rules! enums {
 }
 
 placeless! {
-    bool, i32, i128, u32, u64, Box<str>, String, Said, BinaryOp, BodyLang, ChartKind, Nanos, ProfileName, Qualifier,
+    bool, i32, i128, u32, u64, Box<str>, String, Said, BinaryOp, BodyLang, ChartKind, Moment, Nanos, ProfileName, Qualifier,
     Switch, TargetPlc, Type, UnaryOp, VarKind,
 }
 
@@ -177,7 +178,7 @@ enums! {
     }
     InstanceNames { One(name), Range(least, most) }
     Limits { Range(least, most), Values(values), Of(name) }
-    Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Str(text) }
+    Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Moment(moment, time), Str(text) }
     Order { Force(name, situation), Enable(name), Mask(name), Call(name), Enclose(name) }
     Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text) }
     PlantItem {

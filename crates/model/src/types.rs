@@ -1,5 +1,7 @@
 //! The table of types: the name of each, its width, and what it holds.
 
+use crate::Moment;
+
 /// A type of IEC 61131-3 that a variable can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Type {
@@ -35,6 +37,8 @@ pub enum Type {
     Lreal,
     /// A duration in signed 64-bit nanoseconds.
     Time,
+    /// A date, a time of day, or both, in signed 64-bit nanoseconds.
+    Moment(Moment),
     /// UTF-8 text of at most this many bytes.
     String(u16),
     /// An instance of a standard function block.
@@ -150,6 +154,8 @@ pub enum Holds {
     Real,
     /// A duration.
     Time,
+    /// A date, a time of day, or both.
+    Moment(Moment),
     /// Text.
     Text,
 }
@@ -170,7 +176,7 @@ impl Type {
     pub const STRING: Type = Type::String(80);
 
     /// The elementary types (IEC 61131-3:2003, table 10), STRING with its usual length.
-    pub const ELEMENTARY: [Type; 17] = [
+    pub const ELEMENTARY: [Type; 20] = [
         Type::Bool,
         Type::Sint,
         Type::Int,
@@ -187,6 +193,9 @@ impl Type {
         Type::Real,
         Type::Lreal,
         Type::Time,
+        Type::Moment(Moment::Date),
+        Type::Moment(Moment::Tod),
+        Type::Moment(Moment::Dt),
         Type::STRING,
     ];
 
@@ -209,6 +218,7 @@ impl Type {
             Type::Real => ("REAL", 32, Holds::Real),
             Type::Lreal => ("LREAL", 64, Holds::Real),
             Type::Time => ("TIME", 64, Holds::Time),
+            Type::Moment(moment) => (moment.name(), 64, Holds::Moment(moment)),
             Type::String(_) => ("STRING", 8, Holds::Text),
             Type::Fb(_) => return None,
         };
@@ -257,10 +267,38 @@ impl Type {
         Type::ELEMENTARY.into_iter().map(Type::name).chain(blocks)
     }
 
+    /// Other names of types: the long ones of IEC 61131-3:2003, and those of IEC 61131-3:2013 for 64 bits, which all of these
+    /// have here (decision 65).
+    pub const OTHER_NAMES: [(&'static str, Type); 8] = [
+        ("LTIME", Type::Time),
+        ("LDATE", Type::Moment(Moment::Date)),
+        ("TIME_OF_DAY", Type::Moment(Moment::Tod)),
+        ("LTOD", Type::Moment(Moment::Tod)),
+        ("LTIME_OF_DAY", Type::Moment(Moment::Tod)),
+        ("DATE_AND_TIME", Type::Moment(Moment::Dt)),
+        ("LDT", Type::Moment(Moment::Dt)),
+        ("LDATE_AND_TIME", Type::Moment(Moment::Dt)),
+    ];
+
     /// The type of this name in capitals, elementary or a function block.
     pub fn named(name: &str) -> Option<Type> {
         let elementary = Type::ELEMENTARY.into_iter().find(|ty| ty.name() == name);
-        elementary.or_else(|| FbKind::ALL.into_iter().find(|k| k.name() == name).map(Type::Fb))
+        let other = || Type::OTHER_NAMES.into_iter().find(|(n, _)| *n == name).map(|(_, ty)| ty);
+        let block = || FbKind::ALL.into_iter().find(|k| k.name() == name).map(Type::Fb);
+        elementary.or_else(other).or_else(block)
+    }
+
+    /// The type that a value has in a run: a date and a time of day are durations there (decision 65).
+    pub const fn stored(self) -> Type {
+        match self {
+            Type::Moment(_) => Type::Time,
+            other => other,
+        }
+    }
+
+    /// True for DATE, TOD and DT.
+    pub const fn is_moment(self) -> bool {
+        matches!(self, Type::Moment(_))
     }
 
     /// The kind of its values, for an elementary type.
@@ -318,7 +356,10 @@ mod tests {
             assert_eq!(Type::named(ty.name()), Some(ty));
         }
         assert_eq!(Type::named("Int"), None);
-        assert_eq!(Type::names().count(), 27);
+        assert_eq!(Type::names().count(), 30);
+        for (name, ty) in Type::OTHER_NAMES {
+            assert_eq!((Type::named(name), ty.elementary().map(|row| row.bits)), (Some(ty), Some(64)));
+        }
         assert_eq!(
             (Type::STRING.to_string(), Type::String(9).to_string()),
             ("STRING".into(), "STRING(9)".into())

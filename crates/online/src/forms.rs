@@ -24,6 +24,6 @@ pub(crate) fn usual(kind: Kind) -> Encoding {
         }
         Kind::Real => Encoding::F32,
         Kind::Lreal => Encoding::F64,
-        Kind::Time | Kind::Bool | Kind::Text => Encoding::Signed(2),
+        Kind::Time | Kind::Moment(_) | Kind::Bool | Kind::Text => Encoding::Signed(2),
     }
 }

@@ -105,9 +105,9 @@ pub(crate) fn number(channel: &Channel, carried: &Carried<'_>) -> Result<Scaling
     let holds = match carried.kind {
         Kind::Bool | Kind::Text => Holds::Bit,
         Kind::Int { bits, signed } if plain => Holds::Whole { bits, signed },
-        Kind::Time if plain => Holds::Whole { bits: 64, signed: true },
+        Kind::Time | Kind::Moment(_) if plain => Holds::Whole { bits: 64, signed: true },
         Kind::Real => Holds::Single,
-        Kind::Int { .. } | Kind::Time | Kind::Lreal => Holds::Double,
+        Kind::Int { .. } | Kind::Time | Kind::Moment(_) | Kind::Lreal => Holds::Double,
     };
     Ok(Scaling { kind: carried.kind, holds, inverted: carried.inverted, scale, offset })
 }

@@ -113,7 +113,7 @@ fn plain(kind: Kind) -> Option<Holds> {
     match kind {
         Kind::Bool => Some(Holds::Bit),
         Kind::Int { bits, signed } => Some(Holds::Whole { bits, signed }),
-        Kind::Time => Some(Holds::Whole { bits: 64, signed: true }),
+        Kind::Time | Kind::Moment(_) => Some(Holds::Whole { bits: 64, signed: true }),
         Kind::Real => Some(Holds::Single),
         Kind::Lreal => Some(Holds::Double),
         Kind::Text => None,

@@ -4,6 +4,7 @@
 //! point cannot hold is limited to the nearest one that it can, and counted.
 
 use g7_host::Kind;
+use g7_model::Nanos;
 
 /// A value as a device has it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -45,12 +46,9 @@ pub struct Scaling {
     pub inverted: bool,
     /// The variable is this times the number of the point …
     pub scale: f64,
-    /// … plus this. A TIME is a number of milliseconds.
+    /// … plus this. A TIME and a TOD are a number of milliseconds, a DATE and a DT one of seconds since 1970.
     pub offset: f64,
 }
-
-/// Nanoseconds in the unit of a TIME.
-const MILLISECOND: f64 = 1e6;
 
 impl Scaling {
     /// The same number, or the same bit.
@@ -69,7 +67,10 @@ impl Scaling {
             (Kind::Bool, Raw::Bit(on)) => Some(u64::from(on != self.inverted)),
             (Kind::Bool | Kind::Text, _) | (_, Raw::Bit(_)) => None,
             (Kind::Int { bits, signed }, Raw::Whole(n)) if self.is_plain() => whole(n, bits, signed),
-            (Kind::Time, Raw::Whole(n)) if self.is_plain() => whole(n.checked_mul(1_000_000)?, 64, true),
+            (Kind::Time | Kind::Moment(_), Raw::Whole(n)) if self.is_plain() => {
+                let unit = self.kind.unit()?.count();
+                whole(n.checked_mul(unit.into())?, 64, true).filter(|word| self.kind.admits(*word))
+            }
             (kind, raw) => {
                 let number = match raw {
                     Raw::Whole(n) => n as f64,
@@ -79,7 +80,10 @@ impl Scaling {
                 let scaled = number * self.scale + self.offset;
                 match kind {
                     Kind::Int { bits, signed } => whole(rounded(scaled)?, bits, signed),
-                    Kind::Time => whole(rounded(scaled * MILLISECOND)?, 64, true),
+                    Kind::Time | Kind::Moment(_) => {
+                        let nanos = rounded(scaled * self.kind.unit()?.count() as f64)?;
+                        whole(nanos, 64, true).filter(|word| self.kind.admits(*word))
+                    }
                     Kind::Real => {
                         Some(u64::from((scaled as f32).to_bits())).filter(|_| (scaled as f32).is_finite())
                     }
@@ -103,11 +107,12 @@ impl Scaling {
                 }
                 n as f64
             }
-            Kind::Time => {
+            Kind::Time | Kind::Moment(_) => {
+                let unit = self.kind.unit().unwrap_or(Nanos::MILLISECOND).count();
                 if self.is_plain() {
-                    return self.limited(i128::from(word as i64) / 1_000_000);
+                    return self.limited(i128::from(word as i64) / i128::from(unit));
                 }
-                word as i64 as f64 / MILLISECOND
+                word as i64 as f64 / unit as f64
             }
             Kind::Real => f64::from(f32::from_bits(word as u32)),
             Kind::Lreal => f64::from_bits(word),

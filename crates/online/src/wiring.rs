@@ -386,7 +386,7 @@ impl<'a> Wirer<'a> {
         let fits = match item.kind {
             Kind::Bool => bit,
             Kind::Text => false,
-            Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => !bit,
+            Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => !bit,
         };
         if !fits {
             let what =

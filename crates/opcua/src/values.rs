@@ -1,6 +1,7 @@
 //! Values of OPC UA as values of devices, and back.
 
 use g7_host::Kind;
+use g7_model::Moment;
 use g7_online::{Holds, Raw, Scaling};
 use opcua::types::{DataTypeId, Variant, VariantScalarTypeId as Type};
 
@@ -54,6 +55,9 @@ pub(crate) fn name(kind: Kind) -> &'static str {
         Kind::Real => "a REAL",
         Kind::Lreal => "an LREAL",
         Kind::Time => "a TIME",
+        Kind::Moment(Moment::Date) => "a DATE",
+        Kind::Moment(Moment::Tod) => "a TOD",
+        Kind::Moment(Moment::Dt) => "a DT",
         Kind::Text => "a STRING",
     }
 }

@@ -2,7 +2,7 @@
 
 use g7_compile::Held;
 use g7_host::{Kind, Value};
-use g7_model::{Nanos, Said, say};
+use g7_model::{Moment, Nanos, Said, say};
 
 use crate::Item;
 
@@ -93,6 +93,11 @@ pub fn read(text: &str, kind: Kind) -> Result<Value, Said> {
             .parse::<f64>()
             .map(|x| Value::Word(x.to_bits()))
             .map_err(|_| say!("`{plain}` is not a number")),
+        Kind::Moment(moment) => {
+            let own = |word: &str| Moment::of_literal(&word.to_ascii_uppercase()) == Some(moment);
+            let text = plain.split_once('#').filter(|(word, _)| own(word)).map_or(plain, |(_, text)| text);
+            moment.read(text).map(|time| Value::Word(time.count() as u64))
+        }
         Kind::Time => duration(plain).map(|time| Value::Word(time.count() as u64)),
         Kind::Text => {
             let inner = plain.strip_prefix('\'').and_then(|t| t.strip_suffix('\''));
@@ -186,6 +191,17 @@ mod tests {
         assert!(read("2", Kind::Bool).is_err());
         assert_eq!(read("0.1", Kind::Real), Ok(Value::Word(u64::from(0.1f32.to_bits()))));
         assert_eq!(read("1.5s", Kind::Time), Ok(Value::Word(1_500_000_000)));
+        let day = Nanos::DAY.count() as u64;
+        for text in ["1970-01-02", "D#1970-01-02", " date#1970-01-02"] {
+            assert_eq!(read(text, Kind::Moment(Moment::Date)), Ok(Value::Word(day)), "{text}");
+        }
+        assert_eq!(read("TOD#0:00:00.5", Kind::Moment(Moment::Tod)), Ok(Value::Word(500_000_000)));
+        assert_eq!(
+            read("1970-01-02-00:00:01", Kind::Moment(Moment::Dt)),
+            Ok(Value::Word(day + 1_000_000_000))
+        );
+        assert!(read("DT#1970-01-02", Kind::Moment(Moment::Date)).is_err());
+        assert!(read("1970-02-30", Kind::Moment(Moment::Date)).is_err());
         assert_eq!(read("'a b'", Kind::Text), Ok(Value::Text("a b".into())));
     }
 }

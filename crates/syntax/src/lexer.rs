@@ -7,7 +7,7 @@
 use crate::foreign;
 use crate::problems::Problems;
 use g7_iec::constant;
-use g7_model::{FileId, Fix, Note, Problem, Said, Span, codes, say};
+use g7_model::{FileId, Fix, Note, Problem, Said, Span, Type, codes, say};
 use std::{cell::Cell, rc::Rc};
 
 /// Kinds of token.
@@ -371,25 +371,25 @@ impl<'a> Lexer<'a> {
             return Tok::Word;
         }
         let word = self.text.get(start..self.pos).unwrap_or_default();
-        let kind = if word.eq_ignore_ascii_case("t") || word.eq_ignore_ascii_case("time") {
-            Tok::Time
-        } else if constant::literal_type(word).is_some() {
-            Tok::Typed
-        } else {
-            return Tok::Word;
-        };
+        let Some(ty) = constant::literal_type(word) else { return Tok::Word };
         self.pos += 1;
+        if let Type::Moment(moment) = ty {
+            self.pos += moment.length(self.rest());
+            return Tok::Typed;
+        }
         if matches!(self.byte(0), b'+' | b'-') {
             self.pos += 1;
         }
-        if kind == Tok::Time {
+        if ty == Type::Time {
             self.units();
-        } else if self.byte(0).is_ascii_digit() {
+            return Tok::Time;
+        }
+        if self.byte(0).is_ascii_digit() {
             self.number(false);
         } else {
             self.skip_name();
         }
-        kind
+        Tok::Typed
     }
 
     fn skip_name(&mut self) {

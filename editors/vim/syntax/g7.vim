@@ -19,13 +19,14 @@ syntax keyword g7Reserved return step task then to transition until var when whi
 syntax keyword g7WordOperator AND MOD NOT OR XOR and mod not or xor
 syntax keyword g7Edge delay fall rise
 syntax keyword g7Boolean FALSE TRUE false true
-syntax keyword g7Type F_TRIG R_TRIG STRING ARRAY DWORD LREAL LWORD UDINT ULINT USINT
-syntax keyword g7Type BOOL BYTE CTUD DINT LINT REAL SINT TIME UINT WORD
-syntax keyword g7Type CTD CTU INT TOF TON RS SR TP
+syntax keyword g7Type LDATE_AND_TIME DATE_AND_TIME LTIME_OF_DAY TIME_OF_DAY F_TRIG R_TRIG STRING ARRAY DWORD LDATE
+syntax keyword g7Type LREAL LTIME LWORD UDINT ULINT USINT BOOL BYTE CTUD DATE
+syntax keyword g7Type DINT LINT LTOD REAL SINT TIME UINT WORD CTD CTU
+syntax keyword g7Type INT LDT TOD TOF TON DT RS SR TP
 syntax keyword g7Profile iec60848 iec61131 jgrafchart pl7 unity
 syntax keyword g7Profile tsx3710 tsx3720 tsx57
 syntax match g7Profile /\<\%(parallel-actions\|ordered-actions\|keep-step-time\|zero-step-time\|no-final-scan\|simultaneous\|single-token\|multi-token\|pulse-first\|final-scan\|scan-clock\|sequential\|text-order\|time-clock\|one-pass\|stable\|bound\)\>/
-syntax match g7Function /\<\%(ABS\|ACOS\|ADD\|AND\|ASIN\|ATAN\|CONCAT\|COS\|DELETE\|DIV\|EQ\|EXP\|EXPT\|FIND\|GE\|GT\|INSERT\|LE\|LEFT\|LEN\|LIMIT\|LN\|LOG\|LT\|MAX\|MID\|MIN\|MOD\|MOVE\|MUL\|MUX\|NE\|NOT\|OR\|REPLACE\|RIGHT\|ROL\|ROR\|SEL\|SHL\|SHR\|SIN\|SQRT\|SUB\|TAN\|TRUNC\|XOR\)\>\ze\s*(/
+syntax match g7Function /\<\%(ABS\|ACOS\|ADD\|AND\|ASIN\|ATAN\|CONCAT\|CONCAT_DATE_TOD\|COS\|DAY_OF_WEEK\|DELETE\|DIV\|EQ\|EXP\|EXPT\|FIND\|GE\|GT\|INSERT\|LE\|LEFT\|LEN\|LIMIT\|LN\|LOG\|LT\|MAX\|MID\|MIN\|MOD\|MOVE\|MUL\|MUX\|NE\|NOT\|OR\|REPLACE\|RIGHT\|ROL\|ROR\|SEL\|SHL\|SHR\|SIN\|SQRT\|SUB\|TAN\|TRUNC\|XOR\)\>\ze\s*(/
 syntax match g7Clause /\%(\S\s\+\)\@40<=\<\%(INIT\|after\|always\|at\|between\|block\|bound\|clearing\|cold\|every\|expect\|fault\|il\|in\|inverted\|ld\|leads\|length\|max\|most\|never\|on\|reachable\|retain\|safe\|scan\|section\|seed\|st\|with\|within\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
 syntax match g7Clause /\%(\%(pre\|post\|each\)\s\+\)\@20<=\%(st\|il\|ld\|scan\)\>/
 syntax match g7Qualifier /\<\%(DS\|P0\|P1\|SD\|SL\|D\|L\|N\|P\|R\|S\)\>\ze\s\+[A-Za-z0-9_`%({]/
@@ -36,7 +37,9 @@ syntax match g7Arrow /->\|→/
 syntax match g7Number /\<\d[0-9_]*\%(\.\d[0-9_]*\)\?\%([eE][+-]\?\d\+\)\?\>/
 syntax match g7Number /\<\%(\d\+\|[A-Z]\+\)#[+-]\?[0-9A-Za-z_.]\+/
 syntax match g7Duration /\<\d[0-9_]*\%(\.\d[0-9_]*\)\?\%(d\|h\|ms\|us\|ns\|m\|s\)[0-9a-z_.]*\>/
-syntax match g7Duration /\c\<t\%(ime\)\?#[+-]\?\d[0-9a-z_.]*/
+syntax match g7Duration /\c\<l\?t\%(ime\)\?#[+-]\?\d[0-9a-z_.]*/
+syntax match g7Duration /\c\<l\?\%(d\|date\|dt\|date_and_time\)#\d\+-\d\+-\d\+\%(-\d\+:[0-9:]\+\%(\.\d\+\)\?\)\?/
+syntax match g7Duration /\c\<l\?\%(tod\|time_of_day\)#\d\+:[0-9:]\+\%(\.\d\+\)\?/
 syntax match g7Direct /%\a\w*\%(\.\w\+\)*\%(:[Xx]\d\+\)\?/
 syntax match g7Member /\.\@1<=\w\+/ contained
 syntax match g7Path /\%(\w\|`\)\@1<=\.\w\+/ contains=g7Member

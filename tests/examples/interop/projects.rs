@@ -190,7 +190,7 @@ fn script(compiled: &Compiled) -> Script {
         Type::Bool => Value::Bool(word != 0),
         Type::Real => Value::Real(f32::from_bits(word as u32)),
         Type::Lreal => Value::Lreal(f64::from_bits(word)),
-        Type::Time => Value::Time(word as i64),
+        Type::Time | Type::Moment(_) => Value::Time(word as i64),
         _ => Value::Int(i128::from(word)),
     };
     let scans = project::scans(compiled, 7, SCANS, 10_000_000, false);

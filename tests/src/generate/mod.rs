@@ -5,6 +5,7 @@
 mod block_charts;
 mod body;
 mod composed;
+mod dates;
 mod instances;
 mod named;
 mod rng;

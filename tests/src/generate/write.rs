@@ -7,6 +7,7 @@ use super::Weights;
 use super::block_charts::block_charts;
 use super::body::{self, Driven, Targets};
 use super::composed::composed;
+use super::dates::dates;
 use super::instances::instances;
 use super::named::named;
 use super::rng::Rng;
@@ -77,6 +78,7 @@ pub(super) fn document(rng: &mut Rng, profile: ProfileName, weights: &Weights) -
     composed(rng, &outside, &mut out);
     block_charts(rng, &outside, &mut out);
     named(rng, &outside, &mut out);
+    dates(rng, &outside, &mut out);
     out
 }
 

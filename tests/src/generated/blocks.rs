@@ -44,7 +44,7 @@ fn getter(place: &str, ty: Type) -> String {
         Type::Bool => format!("{place} = word() != 0;"),
         Type::Real => format!("{place} = to_float(word());"),
         Type::Lreal => format!("{place} = to_double(word());"),
-        Type::Time => format!("{place} = to_time(word());"),
+        Type::Time | Type::Moment(_) => format!("{place} = to_time(word());"),
         _ => format!("{place} = word();"),
     }
 }
@@ -54,7 +54,7 @@ fn putter(place: &str, ty: Type) -> String {
         Type::Bool => format!("put({place} ? 1 : 0);"),
         Type::Real => format!("put(of_float({place}));"),
         Type::Lreal => format!("put(of_double({place}));"),
-        Type::Time => format!("put(of_time({place}));"),
+        Type::Time | Type::Moment(_) => format!("put(of_time({place}));"),
         Type::Usint
         | Type::Uint
         | Type::Udint

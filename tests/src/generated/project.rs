@@ -14,7 +14,7 @@ use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
 use g7_engine::{State, StepId, scan};
-use g7_model::Type;
+use g7_model::{Moment, Type};
 
 use crate::generate::Rng;
 
@@ -45,7 +45,8 @@ pub fn scans(compiled: &Compiled, seed: u64, count: usize, cycle: i64, even: boo
                 Type::Bool => u64::from(rng.percent(50)),
                 Type::Real => u64::from((rng.below(80) as f32 * 0.5 - 4.0).to_bits()),
                 Type::Lreal => (rng.below(80) as f64 * 0.5 - 4.0).to_bits(),
-                Type::Time => (rng.below(8) as u64) * 1_000_000_000,
+                Type::Time | Type::Moment(Moment::Tod | Moment::Dt) => (rng.below(8) as u64) * 1_000_000_000,
+                Type::Moment(Moment::Date) => (rng.below(8) as u64) * 86_400_000_000_000,
                 _ => rng.below(12) as u64,
             };
             inputs.insert(key(&v.name), word);
@@ -257,7 +258,7 @@ impl Program {
             let c = &p.c;
             let line = match Type::named(&p.ty) {
                 Some(Type::Real | Type::Lreal) => format!("memcpy(&{c}, &w, sizeof {c});"),
-                Some(Type::Time) => format!("{c} = to_time(w);"),
+                Some(Type::Time | Type::Moment(_)) => format!("{c} = to_time(w);"),
                 Some(Type::String(_)) | None => String::new(),
                 Some(_) => format!("{c} = w;"),
             };
@@ -268,7 +269,7 @@ impl Program {
             let c = &p.c;
             let line = match Type::named(&p.ty) {
                 Some(Type::Real | Type::Lreal) => format!("w = 0; memcpy(&w, &{c}, sizeof {c}); put(w);"),
-                Some(Type::Time) => format!("put(of_time({c}));"),
+                Some(Type::Time | Type::Moment(_)) => format!("put(of_time({c}));"),
                 Some(Type::String(_)) | None => "put(0);".to_owned(),
                 Some(Type::Bool) => format!("put({c} ? 1 : 0);"),
                 Some(

@@ -88,7 +88,10 @@ pub(super) fn grammar(words: &Vocabulary) -> String {
             })]),
             "durations": rules(vec![json!({
                 "name": "constant.numeric.duration.g7",
-                "match": r"(?<!\w)(?<!\w\.)(?:[0-9][0-9_]*(?:\.[0-9][0-9_]*)?(?:d|h|ms|us|ns|m|s|D|H|MS|US|NS|M|S)(?:[0-9_.a-zA-Z]*[0-9a-zA-Z])?|(?i:t|time)#[+-]?[0-9][0-9_.a-zA-Z]*)",
+                "match": r"(?<!\w)(?<!\w\.)(?:[0-9][0-9_]*(?:\.[0-9][0-9_]*)?(?:d|h|ms|us|ns|m|s|D|H|MS|US|NS|M|S)(?:[0-9_.a-zA-Z]*[0-9a-zA-Z])?|(?i:l?t|l?time)#[+-]?[0-9][0-9_.a-zA-Z]*)",
+            }), json!({
+                "name": "constant.numeric.date.g7",
+                "match": r"(?<!\w)(?<!\w\.)(?i:l?(?:d|date|tod|time_of_day|dt|date_and_time))#[0-9]+(?:-[0-9]+-[0-9]+(?:-[0-9]+:[0-9:]+(?:\.[0-9]+)?)?|:[0-9:]+(?:\.[0-9]+)?)",
             })]),
             "numbers": rules(vec![json!({
                 "name": "constant.numeric.g7",

@@ -22,7 +22,9 @@ syntax match g7Arrow /->\|→/
 syntax match g7Number /\<\d[0-9_]*\%(\.\d[0-9_]*\)\?\%([eE][+-]\?\d\+\)\?\>/
 syntax match g7Number /\<\%(\d\+\|[A-Z]\+\)#[+-]\?[0-9A-Za-z_.]\+/
 syntax match g7Duration /\<\d[0-9_]*\%(\.\d[0-9_]*\)\?\%(d\|h\|ms\|us\|ns\|m\|s\)[0-9a-z_.]*\>/
-syntax match g7Duration /\c\<t\%(ime\)\?#[+-]\?\d[0-9a-z_.]*/
+syntax match g7Duration /\c\<l\?t\%(ime\)\?#[+-]\?\d[0-9a-z_.]*/
+syntax match g7Duration /\c\<l\?\%(d\|date\|dt\|date_and_time\)#\d\+-\d\+-\d\+\%(-\d\+:[0-9:]\+\%(\.\d\+\)\?\)\?/
+syntax match g7Duration /\c\<l\?\%(tod\|time_of_day\)#\d\+:[0-9:]\+\%(\.\d\+\)\?/
 syntax match g7Direct /%\a\w*\%(\.\w\+\)*\%(:[Xx]\d\+\)\?/
 syntax match g7Member /\.\@1<=\w\+/ contained
 syntax match g7Path /\%(\w\|`\)\@1<=\.\w\+/ contains=g7Member

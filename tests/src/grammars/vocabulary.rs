@@ -57,7 +57,9 @@ impl Vocabulary {
             constants,
             edges,
             qualifiers: long_first(Qualifier::ALL.map(Qualifier::name).into()),
-            types: long_first(Type::names().chain(["ARRAY"]).collect()),
+            types: long_first(
+                Type::names().chain(Type::OTHER_NAMES.map(|(name, _)| name)).chain(["ARRAY"]).collect(),
+            ),
             functions: texts(functions),
             profiles: texts(ProfileName::ALL.map(ProfileName::name).into()),
             switches: long_first(g7_syntax::SWITCHES.map(|(name, _)| name).into()),

@@ -1,6 +1,6 @@
 //! The standard functions (decision 19).
 
-use g7_model::{BinaryOp, Type};
+use g7_model::{BinaryOp, Moment, Type};
 
 use super::bits;
 use super::value::{NaiveFault, Run, Typed, Value, bad, binary, common, cut, negate};
@@ -15,6 +15,9 @@ pub(super) fn call(name: &str, args: &[Typed]) -> Run<Typed> {
             [x] => convert(from, to, x),
             _ => bad(format!("{name} takes one argument")),
         };
+    }
+    if let Some(value) = super::moments::call(&name, args) {
+        return value;
     }
     if let [x] = args
         && let Some(value) = bits::decimal(&name, x)
@@ -92,10 +95,12 @@ fn shifted(name: &str, bits: &Typed, by: &Typed) -> Run<Typed> {
 
 fn type_named(name: &str) -> Option<Type> {
     use Type as T;
+    let other = T::OTHER_NAMES.into_iter().find(|(other, _)| *other == name).map(|(_, ty)| ty);
+    let moments = Moment::ALL.into_iter().map(T::Moment);
     let all = [T::Bool, T::Sint, T::Int, T::Dint, T::Lint, T::Usint, T::Uint, T::Udint, T::Ulint];
     let all = all.into_iter().chain([T::Byte, T::Word, T::Dword, T::Lword]);
     let more = [T::Real, T::Lreal, T::Time, T::String(80)];
-    all.chain(more).find(|t| t.to_string() == name)
+    other.or_else(|| all.chain(more).chain(moments).find(|t| t.to_string() == name))
 }
 
 fn real(x: &Typed, single: fn(f32) -> f32, double: fn(f64) -> f64) -> Run<Typed> {
@@ -149,6 +154,9 @@ fn rounded(x: &f64, to: Type) -> Run<Typed> {
 
 fn convert(from: Type, to: Type, x: &Typed) -> Run<Typed> {
     let v = x.to(from)?;
+    if let Some(done) = super::moments::convert(from, to, &Typed::of(from, v.clone())) {
+        return done;
+    }
     let done = match (&v, to) {
         (Value::Str(s), _) => return from_text(s, to),
         (_, Type::String(n)) => Value::Str(cut(&as_text(&v)?, usize::from(n))),

@@ -298,6 +298,7 @@ pub(super) fn literal(l: &Literal) -> Run<Typed> {
     let (ty, plain) = match l {
         Literal::Bool(b) => return Ok(Typed::bool(*b)),
         Literal::Time(t) => return Ok(Typed::time(t.count())),
+        Literal::Moment(moment, t) => return Ok(Typed::of(Type::Moment(*moment), Value::Time(t.count()))),
         Literal::Str(s) => return Ok(Typed::of(Type::String(u16::MAX), Value::Str(s.to_string()))),
         Literal::Int(n, ty) => (*ty, Value::Int(*n)),
         Literal::Real(text, Some(Type::Real)) => match text.parse() {

@@ -15,6 +15,7 @@ mod fb;
 mod force;
 mod instances;
 mod model;
+mod moments;
 mod named;
 mod resolve;
 mod sample;

@@ -133,7 +133,7 @@ impl Typed {
             (Type::Lreal, Value::Int(n)) => Value::Lreal(*n as f64),
             (Type::Lreal, Value::Real(x)) => Value::Lreal(f64::from(*x)),
             (Type::Lreal, Value::Lreal(x)) => Value::Lreal(*x),
-            (Type::Time, Value::Time(t)) => Value::Time(*t),
+            (Type::Time | Type::Moment(_), Value::Time(t)) => Value::Time(*t),
             (Type::String(n), Value::Str(s)) => Value::Str(cut(s, usize::from(n))),
             (Type::Fb(kind), Value::Fb(f)) if f.kind == kind => self.v.clone(),
             (_, v) => return bad(format!("{v:?} where {ty} is needed")),
@@ -156,7 +156,7 @@ pub(super) fn zero(ty: Type) -> Value {
         Type::Bool => Value::Bool(false),
         Type::Real => Value::Real(0.0),
         Type::Lreal => Value::Lreal(0.0),
-        Type::Time => Value::Time(0),
+        Type::Time | Type::Moment(_) => Value::Time(0),
         Type::String(_) => Value::Str(String::new()),
         Type::Fb(kind) => Value::Fb(FbState::new(kind)),
         Type::Sint
@@ -347,6 +347,9 @@ fn with_time(op: BinaryOp, a: &Typed, b: &Typed) -> Run<Option<Typed>> {
         }
         Ok(Some(Typed::time(x as i64)))
     };
+    if let Some(done) = super::moments::sum(op, a, b) {
+        return done.map(Some);
+    }
     match (op, &a.v, &b.v) {
         (BinaryOp::Add, Value::Time(x), Value::Time(y)) => in_bounds(i128::from(*x) + i128::from(*y)),
         (BinaryOp::Sub, Value::Time(x), Value::Time(y)) => in_bounds(i128::from(*x) - i128::from(*y)),

@@ -176,7 +176,7 @@ fn kind(ty: Type) -> Option<Kind> {
         Type::Ulint | Type::Lword => Kind::U64,
         Type::Real => Kind::F32,
         Type::Lreal => Kind::F64,
-        Type::Time => Kind::Time,
+        Type::Time | Type::Moment(_) => Kind::Time,
         Type::String(room) => Kind::Text(room),
         Type::Fb(_) => return None,
     })

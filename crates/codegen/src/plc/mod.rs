@@ -160,6 +160,10 @@ impl Printed {
 /// The constructs that the form cannot say, with their places in the chart.
 pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Result<Printed, Vec<Problem>> {
     let dialect = form.dialect();
+    let dates = dates(compiled);
+    if !dates.is_empty() {
+        return Err(dates);
+    }
     let (block, memories, problems) = scan::block(compiled, name, source, dialect);
     if problems.iter().any(|p| p.severity() == Severity::Error) {
         return Err(problems);
@@ -193,4 +197,16 @@ pub fn print(compiled: &Compiled, form: Form, name: &str, source: &str) -> Resul
     };
     let variables = memories.shown.into_iter().map(|(addr, name, n)| (addr.0, (name, n))).collect();
     Ok(Printed { text, name: block.name, beside, problems, steps: memories.steps, variables })
+}
+
+/// The refusal of dates and times of day: they are durations here, and the TIME of a controller holds some weeks.
+fn dates(compiled: &Compiled) -> Vec<Problem> {
+    let mut problems: Vec<Problem> = Vec::new();
+    for v in compiled.symbols.variables.iter().filter(|v| v.ty.is_moment()) {
+        let what = say!("a {} cannot be printed as code for PLCs", v.ty);
+        if problems.iter().all(|p| p.at != v.at) {
+            problems.push(Problem::new(&codes::NOT_CARRIED, v.at, what));
+        }
+    }
+    problems
 }

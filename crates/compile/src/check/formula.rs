@@ -70,7 +70,7 @@ pub(super) struct Atom<'e> {
 /// True if some value of a type has this place among the cuts.
 #[inline(never)]
 pub(super) fn is_taken(ty: Type, cuts: &[Cut<'_>], place: usize) -> bool {
-    let whole = ty.is_integer() || ty == Type::Time;
+    let whole = ty.is_integer() || ty.stored() == Type::Time;
     let (least, most) = ty.bounds().map_or((None, None), |(a, b)| (Some(a as f64), Some(b as f64)));
     let at = |k: usize| match cuts.get(k) {
         Some(Cut::Number(x)) => Some(*x),

@@ -72,7 +72,7 @@ impl Lower<'_> {
             Target::Var(var) => To::Variable(*var),
             Target::Element(all, index) => {
                 let index = self.element_place(period, all, index);
-                let ty = self.unit.vars.get(all.first.index()).map_or(Type::Bool, |v| v.ty);
+                let ty = self.stored_type(all.first).unwrap_or(Type::Bool);
                 To::Number(ty, tree::Target::Element(self.words.addr(all.first), all.count(), index))
             }
             Target::Member(var, member) => {

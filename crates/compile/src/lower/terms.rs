@@ -53,11 +53,16 @@ impl Lower<'_> {
     fn kind(&mut self, period: u32, e: &ir::Expr) -> Expr {
         let at = e.at;
         let kind = match &e.kind {
-            ir::ExprKind::Const(value) => return self.constant(e.ty, value, at),
+            ir::ExprKind::Const(value) => return self.constant(e.ty.stored(), value, at),
             ir::ExprKind::Var(var) => return self.load(*var, at),
             ir::ExprKind::Element(all, index) => {
                 let index = Box::new(self.element_place(period, all, index));
-                ExprKind::Element { ty: e.ty, base: self.words.addr(all.first), len: all.count(), index }
+                ExprKind::Element {
+                    ty: e.ty.stored(),
+                    base: self.words.addr(all.first),
+                    len: all.count(),
+                    index,
+                }
             }
             ir::ExprKind::Member(var, member) => {
                 ExprKind::Word(e.ty, Addr(self.words.addr(*var).0 + u32::from(*member)))
@@ -102,7 +107,7 @@ impl Lower<'_> {
     /// an element that is read for nothing: an index outside of them must not lead to another element.
     pub(super) fn element_place(&mut self, period: u32, all: &ir::Elements, index: &[ir::Expr]) -> Expr {
         let base = self.words.addr(all.first);
-        let ty = self.unit.vars.get(all.first.index()).map_or(Type::Bool, |v| v.ty);
+        let ty = self.stored_type(all.first).unwrap_or(Type::Bool);
         let at = index.first().map_or(Span::default(), |e| e.at);
         let (mut stride, mut sum, mut held) = (1, None, Vec::new());
         for (e, count) in index.iter().zip(&*all.counts).rev() {
@@ -141,7 +146,7 @@ impl Lower<'_> {
     fn load(&mut self, var: VarId, at: Span) -> Expr {
         let Some(v) = self.unit.vars.get(var.index()) else { return Expr::truth(false, at) };
         let addr = self.addr(var);
-        let kind = match v.ty {
+        let kind = match v.ty.stored() {
             Type::String(n) => ExprKind::Text(addr, capacity(n)),
             ty if v.class == VarClass::Const && v.elements == 1 => ExprKind::Const(ty, word_of(ty, &v.init)),
             ty => ExprKind::Word(ty, addr),
@@ -259,7 +264,7 @@ impl Lower<'_> {
                 tree = Expr::new(ExprKind::Convert(Type::Time, right.ty, Box::new(tree)), at);
             }
             let other = self.expr(period, right);
-            let kind = if scaled { right.ty } else { left.ty };
+            let kind = if scaled { right.ty } else { left.ty.stored() };
             let is_text = matches!(left.ty, Type::String(_));
             tree = operator(op, kind, is_text, tree, other, at);
             if scaled {
@@ -271,7 +276,7 @@ impl Lower<'_> {
 
     fn convert(&mut self, period: u32, x: &ir::Expr, ty: Type, at: Span) -> Expr {
         let value = self.expr(period, x);
-        let kind = match (x.ty, ty) {
+        let kind = match (x.ty.stored(), ty.stored()) {
             (Type::String(_), Type::String(_)) => return value,
             (from, Type::String(n)) => {
                 let cap = capacity(n);
@@ -295,7 +300,7 @@ impl Lower<'_> {
             };
             ExprKind::TextCall { function, args, to, cap }
         } else {
-            ExprKind::Call(function, e.ty, args)
+            ExprKind::Call(function, e.ty.stored(), args)
         };
         Expr::new(kind, e.at)
     }
@@ -312,7 +317,7 @@ impl Lower<'_> {
         }
         list.push(self.clear(function.result, at));
         list.push(self.inline(period, &function.statements));
-        let ty = unit.vars.get(function.result.index()).map_or(Type::Bool, |v| v.ty);
+        let ty = self.stored_type(function.result).unwrap_or(Type::Bool);
         let result = self.words.addr(function.result);
         let value = match ty {
             // A second call would write over it.
@@ -340,7 +345,7 @@ impl Lower<'_> {
         let aside = trees.iter().rposition(calls).unwrap_or(0);
         let mut ready = Vec::with_capacity(trees.len());
         for (i, (tree, arg)) in trees.into_iter().zip(args).enumerate() {
-            ready.push(if i < aside { self.put_aside(tree, arg.ty, list) } else { tree });
+            ready.push(if i < aside { self.put_aside(tree, arg.ty.stored(), list) } else { tree });
         }
         ready
     }
@@ -383,6 +388,11 @@ impl Lower<'_> {
         Expr::new(ExprKind::After(list, Box::new(Expr::new(ExprKind::Word(Type::Bool, to), at))), at)
     }
 
+    /// The type that the values of a variable have in a run.
+    pub(super) fn stored_type(&self, var: VarId) -> Option<Type> {
+        self.unit.vars.get(var.index()).map(|v| v.ty.stored())
+    }
+
     /// Where a variable is read and written now.
     pub(super) fn addr(&self, var: VarId) -> Addr {
         match self.section {
@@ -393,7 +403,7 @@ impl Lower<'_> {
 
     /// Zero, FALSE or the empty text into a variable.
     fn clear(&mut self, var: VarId, at: Span) -> Stmt {
-        let ty = self.unit.vars.get(var.index()).map_or(Type::Bool, |v| v.ty);
+        let ty = self.stored_type(var).unwrap_or(Type::Bool);
         let zero = match ty {
             Type::String(_) => ExprKind::Text(self.words.text(""), 0),
             _ => ExprKind::Const(ty, 0),
@@ -404,7 +414,7 @@ impl Lower<'_> {
     /// A value into a variable.
     pub(super) fn store(&mut self, var: VarId, value: Expr, at: Span) -> Stmt {
         let to = self.addr(var);
-        match self.unit.vars.get(var.index()).map(|v| v.ty) {
+        match self.stored_type(var) {
             Some(Type::String(n)) => Stmt { kind: tree::StmtKind::StoreText(to, capacity(n), value), at },
             Some(ty) => store_word(ty, to, value, at),
             None => Stmt { kind: tree::StmtKind::Evaluate(value), at },

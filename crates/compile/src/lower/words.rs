@@ -148,7 +148,8 @@ pub fn words_of(ty: Type) -> u32 {
         | Type::Lword
         | Type::Real
         | Type::Lreal
-        | Type::Time => 1,
+        | Type::Time
+        | Type::Moment(_) => 1,
     }
 }
 
@@ -159,7 +160,7 @@ pub fn num(ty: Type) -> Num {
         Type::Sint => Num::I8,
         Type::Int => Num::I16,
         Type::Dint => Num::I32,
-        Type::Lint | Type::Time => Num::I64,
+        Type::Lint | Type::Time | Type::Moment(_) => Num::I64,
         Type::Usint | Type::Byte => Num::U8,
         Type::Uint | Type::Word => Num::U16,
         Type::Udint | Type::Dword => Num::U32,

@@ -1,16 +1,15 @@
 //! Numbers in binary-coded decimal: `WORD_BCD_TO_UINT`, `UINT_TO_BCD_WORD` and the forms without the bit string.
 //!
-//! A conversion is a function of the chart that is made at its first call (decision 57), so that no later stage knows of it.
+//! A conversion is a function that is made at its first call (decision 57).
 
 use g7_engine::Builtin;
 use g7_model::{Arg, Name, Problem, Span, Type, codes, say};
 
 use super::bits;
+use super::made::{binary, compare, constant, unless};
 use super::resolver::Resolver;
 use super::types::{Typed, converted};
-use crate::ir::{
-    BinaryOp, Expr, ExprKind, Function, FunctionId, Stmt, StmtKind, Target, Value, VarClass, VarId,
-};
+use crate::ir::{BinaryOp, Expr, ExprKind, Value, VarId};
 
 /// A conversion by its name. Where the name leaves the bit string out, the argument or the place of the result tells it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -118,70 +117,18 @@ impl Resolver<'_, '_> {
             };
         }
         let (from, to) = if decodes { (bits, number) } else { (number, bits) };
-        let full = if decodes { format!("{from}_BCD_TO_{to}") } else { format!("{from}_TO_BCD_{to}") };
-        let made = self.unit.functions.iter().position(|f| *f.name == *full);
-        let function = match made {
-            Some(known) => FunctionId(known as u32),
-            None => self.make(&full, bits, number, decodes, at)?,
-        };
+        let full = if decodes { format!("@{from}_BCD_TO_{to}") } else { format!("@{from}_TO_BCD_{to}") };
+        let function = self.made(&full, (from, to), at, |r, input, result| {
+            let counter = bits.unsigned().unwrap_or(Type::Ulint);
+            let work = r.local(&format!("{full}.n"), counter, at);
+            let make = Make { bits, counter, at };
+            if decodes {
+                make.decoded(number, (input, work, result))
+            } else {
+                make.encoded(number, (input, work, result))
+            }
+        });
         Some(Typed::of(ExprKind::Call(function, vec![value]), result, at))
-    }
-
-    /// Adds the function of a conversion.
-    fn make(&mut self, name: &str, bits: Type, number: Type, decodes: bool, at: Span) -> Option<FunctionId> {
-        let id = FunctionId(self.unit.functions.len() as u32);
-        let (from, to) = if decodes { (bits, number) } else { (number, bits) };
-        let counter = bits.unsigned()?;
-        let input = self.add_var(format!("{name}.IN").into(), VarClass::Local, from, at);
-        let work = self.add_var(format!("{name}.n").into(), VarClass::Local, counter, at);
-        let result = self.add_var(name.into(), VarClass::Local, to, at);
-        let make = Make { bits, counter, at };
-        let mut statements = Vec::new();
-        let mut assign = |target: VarId, value: Expr| {
-            statements.push(Stmt { kind: StmtKind::Assign(Target::Var(target), value), at });
-        };
-        let count = digits(bits);
-        let read = |v: VarId, ty: Type| Expr { kind: ExprKind::Var(v), ty, at };
-        let n = || read(work, counter);
-        if decodes {
-            assign(work, converted(read(input, bits), counter));
-            for (mask, shift, weight) in make.steps() {
-                let high = make.and(make.shifted(Builtin::Shr, converted(n(), bits), shift), mask);
-                let surplus = make.arith(BinaryOp::Mul, converted(high, counter), weight);
-                assign(work, make.binary(BinaryOp::Sub, n(), surplus, counter));
-            }
-            let mut wrong = make.digit_over_nine(read(input, bits));
-            let most = number.bounds().map_or(0, |(_, most)| most);
-            if most < largest(count) {
-                let large = make.compare(BinaryOp::Gt, n(), most);
-                wrong = make.binary(BinaryOp::Or, wrong, large, Type::Bool);
-            }
-            let right = make.unless(wrong, n());
-            assign(result, converted(converted(right, bits), number));
-        } else {
-            let (least, most) = number.bounds()?;
-            let given = || read(input, number);
-            let negative = (least < 0).then(|| make.compare(BinaryOp::Lt, given(), 0));
-            let large = (most > largest(count)).then(|| make.compare(BinaryOp::Gt, given(), largest(count)));
-            let plain = converted(converted(given(), bits), counter);
-            let right = match (negative, large) {
-                (Some(a), Some(b)) => make.unless(make.binary(BinaryOp::Or, a, b, Type::Bool), plain),
-                (Some(one), None) | (None, Some(one)) => make.unless(one, plain),
-                (None, None) => plain,
-            };
-            assign(work, right);
-            // A digit weighs 16 in place of 10: each ten of the number adds 6, each hundred 96, and so on.
-            let mut all = n();
-            for k in 1..count {
-                let times = make.arith(BinaryOp::Div, n(), 10i128.pow(k));
-                let more = make.arith(BinaryOp::Mul, times, 6 * (1 << (4 * (k - 1))));
-                all = make.binary(BinaryOp::Add, all, more, counter);
-            }
-            assign(result, converted(all, bits));
-        }
-        self.scopes.params.push(vec!["IN"]);
-        self.unit.functions.push(Function { name: name.into(), params: vec![input], result, statements, at });
-        Some(id)
     }
 }
 
@@ -210,30 +157,63 @@ impl Make {
         steps
     }
 
-    fn constant(&self, n: i128, ty: Type) -> Expr {
-        bits::constant(n, ty, self.at)
+    /// The assignments of the conversion to a number, by the input, a variable of its own and the result.
+    fn decoded(&self, number: Type, (input, work, result): (VarId, VarId, VarId)) -> Vec<(VarId, Expr)> {
+        let (bits, counter, at) = (self.bits, self.counter, self.at);
+        let n = || self.read(work, counter);
+        let mut list = vec![(work, converted(self.read(input, bits), counter))];
+        for (mask, shift, weight) in self.steps() {
+            let high = self.and(self.shifted(Builtin::Shr, converted(n(), bits), shift), mask);
+            let surplus = self.arith(BinaryOp::Mul, converted(high, counter), weight);
+            list.push((work, binary(BinaryOp::Sub, n(), surplus, counter, at)));
+        }
+        let mut wrong = self.digit_over_nine(self.read(input, bits));
+        let most = number.bounds().map_or(0, |(_, most)| most);
+        if most < largest(digits(bits)) {
+            wrong = binary(BinaryOp::Or, wrong, compare(BinaryOp::Gt, n(), most, at), Type::Bool, at);
+        }
+        list.push((result, converted(converted(unless(wrong, n(), at), bits), number)));
+        list
     }
 
-    fn binary(&self, op: BinaryOp, a: Expr, b: Expr, ty: Type) -> Expr {
-        Expr { kind: ExprKind::Binary(op, Box::new(a), Box::new(b)), ty, at: self.at }
+    /// The assignments of the conversion to decimal digits.
+    fn encoded(&self, number: Type, (input, work, result): (VarId, VarId, VarId)) -> Vec<(VarId, Expr)> {
+        let (bits, counter, at, count) = (self.bits, self.counter, self.at, digits(self.bits));
+        let (least, most) = number.bounds().unwrap_or((0, 0));
+        let given = || self.read(input, number);
+        let negative = (least < 0).then(|| compare(BinaryOp::Lt, given(), 0, at));
+        let large = (most > largest(count)).then(|| compare(BinaryOp::Gt, given(), largest(count), at));
+        let plain = converted(converted(given(), bits), counter);
+        let right = match (negative, large) {
+            (Some(a), Some(b)) => unless(binary(BinaryOp::Or, a, b, Type::Bool, at), plain, at),
+            (Some(one), None) | (None, Some(one)) => unless(one, plain, at),
+            (None, None) => plain,
+        };
+        // A digit weighs 16 in place of 10: each ten of the number adds 6, each hundred 96, and so on.
+        let mut all = self.read(work, counter);
+        for k in 1..count {
+            let times = self.arith(BinaryOp::Div, self.read(work, counter), 10i128.pow(k));
+            let more = self.arith(BinaryOp::Mul, times, 6 * (1 << (4 * (k - 1))));
+            all = binary(BinaryOp::Add, all, more, counter, at);
+        }
+        vec![(work, right), (result, converted(all, bits))]
+    }
+
+    fn read(&self, v: VarId, ty: Type) -> Expr {
+        Expr { kind: ExprKind::Var(v), ty, at: self.at }
     }
 
     fn arith(&self, op: BinaryOp, a: Expr, n: i128) -> Expr {
-        self.binary(op, a, self.constant(n, self.counter), self.counter)
-    }
-
-    fn compare(&self, op: BinaryOp, a: Expr, n: i128) -> Expr {
-        let ty = a.ty;
-        self.binary(op, a, self.constant(n, ty), Type::Bool)
+        binary(op, a, constant(n, self.counter, self.at), self.counter, self.at)
     }
 
     fn shifted(&self, function: Builtin, value: Expr, by: u32) -> Expr {
-        let args = vec![value, self.constant(i128::from(by), Type::Lint)];
+        let args = vec![value, constant(i128::from(by), Type::Lint, self.at)];
         Expr { kind: ExprKind::Builtin(function, args), ty: self.bits, at: self.at }
     }
 
     fn and(&self, value: Expr, mask: i128) -> Expr {
-        bits::joined(Builtin::BitAnd, value, self.constant(mask, self.bits), self.at)
+        bits::joined(Builtin::BitAnd, value, constant(mask, self.bits, self.at), self.at)
     }
 
     /// True if the bit of 8 of some digit is set together with that of 4 or of 2.
@@ -243,19 +223,7 @@ impl Make {
         let two = self.shifted(Builtin::Shl, value.clone(), 2);
         let lower = bits::joined(Builtin::BitOr, four, two, self.at);
         let both = bits::joined(Builtin::BitAnd, value, lower, self.at);
-        self.compare(BinaryOp::Ne, self.and(both, eights), 0)
-    }
-
-    /// The value, or the fault `range`: of the inputs 0 and 1 of this MUX the third is chosen.
-    fn unless(&self, wrong: Expr, value: Expr) -> Expr {
-        let long = |n: i128| self.constant(n, Type::Lint);
-        let choice = Expr {
-            kind: ExprKind::Builtin(Builtin::Sel, vec![wrong, long(0), long(2)]),
-            ty: Type::Lint,
-            at: self.at,
-        };
-        let (ty, zero) = (value.ty, self.constant(0, value.ty));
-        Expr { kind: ExprKind::Builtin(Builtin::Mux, vec![choice, value, zero]), ty, at: self.at }
+        compare(BinaryOp::Ne, self.and(both, eights), 0, self.at)
     }
 }
 

@@ -7,6 +7,7 @@ use g7_engine::Builtin;
 use g7_model::{BinaryOp as Sign, Problem, Span, Type, codes, say};
 
 use super::constant::transferred;
+use super::made::constant;
 use super::resolver::Resolver;
 use super::types::{Typed, common, converted};
 use crate::ir::{BinaryOp, Expr, ExprKind, StmtKind, Target, Value, VarClass, VarId};
@@ -14,11 +15,6 @@ use crate::ir::{BinaryOp, Expr, ExprKind, StmtKind, Target, Value, VarClass, Var
 /// A bit string with all bits set.
 fn all(ty: Type) -> i128 {
     ty.bounds().map_or(0, |(_, most)| most)
-}
-
-/// A constant of a whole type or a bit string.
-pub(super) fn constant(n: i128, ty: Type, at: Span) -> Expr {
-    Expr { kind: ExprKind::Const(Value::Int(n)), ty, at }
 }
 
 /// Two bit strings of one type, bit by bit; constants are computed at once.

@@ -1,6 +1,6 @@
 //! Calls in expressions: functions of the document, standard functions, conversions.
 
-use g7_model::{Arg, Name, Nanos, Path, Problem, Said, Span, StandardFunction, Type, codes, say};
+use g7_model::{Arg, Moment, Name, Nanos, Path, Problem, Said, Span, StandardFunction, Type, codes, say};
 
 use super::bcd::Bcd;
 use super::constant;
@@ -166,7 +166,7 @@ impl Resolver<'_, '_> {
         Some(arg)
     }
 
-    /// `DINT_TO_INT(n)`; TIME is converted in milliseconds.
+    /// `DINT_TO_INT(n)`; TIME and TOD are converted in milliseconds, DATE and DT in seconds.
     fn call_conversion(
         &mut self,
         from: Type,
@@ -179,8 +179,17 @@ impl Resolver<'_, '_> {
         let want = if matches!(from, Type::String(_)) { Type::String(g7_engine::TEXT) } else { from };
         let e = self.value(&arg.value, want)?;
         match (from, to) {
-            (Type::Time, _) if to.is_number() => self.time_as_number(e, to, at),
-            (_, Type::Time) if from.is_number() => self.number_as_time(e, at),
+            (Type::Time, _) if to.is_number() => self.time_as_number(e, to, MILLISECOND, at),
+            (_, Type::Time) if from.is_number() => self.number_as_time(e, MILLISECOND, at),
+            (Type::Moment(moment), _) if to.is_number() => {
+                self.time_as_number(converted(e, Type::Time), to, i128::from(moment.unit().count()), at)
+            }
+            (_, Type::Moment(moment)) if from.is_number() => {
+                let time = self.number_as_time(e, i128::from(moment.unit().count()), at)?;
+                self.moment_of(time.expr, moment, at)
+            }
+            (Type::Moment(Moment::Dt), Type::Moment(Moment::Date)) => self.day(e, at),
+            (Type::Moment(Moment::Dt), Type::Moment(Moment::Tod)) => self.time_of_day(e, at),
             _ if from.is_bits() && !whole(to) || to.is_bits() && !whole(from) => {
                 let what = say!("there is no conversion from {from} to {to}");
                 let problem = Problem::new(&codes::UNKNOWN_NAME, name.at.0, what);
@@ -190,8 +199,10 @@ impl Resolver<'_, '_> {
                 )))
             }
             (Type::Time, Type::Bool) | (Type::Bool | Type::String(_), Type::Time) => {
-                let what = say!("there is no conversion from {from} to {to}");
-                self.report(Problem::new(&codes::UNKNOWN_NAME, name.at.0, what))
+                self.no_conversion(from, to, name.at.0)
+            }
+            (Type::Moment(_), _) | (_, Type::Moment(_)) if from != to => {
+                self.no_conversion(from, to, name.at.0)
             }
             _ => self.convert(e, to, at),
         }
@@ -214,39 +225,39 @@ impl Resolver<'_, '_> {
         Some(Typed::of(ExprKind::Convert(Box::new(e)), to, at))
     }
 
-    fn time_as_number(&mut self, time: Expr, to: Type, at: Span) -> Option<Typed> {
+    fn time_as_number(&mut self, time: Expr, to: Type, unit: i128, at: Span) -> Option<Typed> {
         if to.is_integer() {
-            let ms = Typed::constant(Value::Int(MILLISECOND), Type::Lint, at).expr;
+            let unit_constant = Typed::constant(Value::Int(unit), Type::Lint, at).expr;
             let whole = match &time.kind {
                 ExprKind::Const(Value::Int(ns)) => {
-                    Typed::constant(Value::Int(ns / MILLISECOND), Type::Time, at).expr
+                    Typed::constant(Value::Int(ns / unit), Type::Time, at).expr
                 }
                 _ => {
-                    let kind = ExprKind::Binary(BinaryOp::Div, Box::new(time), Box::new(ms));
+                    let kind = ExprKind::Binary(BinaryOp::Div, Box::new(time), Box::new(unit_constant));
                     Expr { kind, ty: Type::Time, at }
                 }
             };
             return self.convert(whole, to, at);
         }
         let ns = converted(time, Type::Lreal);
-        let ms = Typed::constant(Value::Real(MILLISECOND as f64), Type::Lreal, at).expr;
+        let ms = Typed::constant(Value::Real(unit as f64), Type::Lreal, at).expr;
         let kind = ExprKind::Binary(BinaryOp::Div, Box::new(ns), Box::new(ms));
         self.convert(Expr { kind, ty: Type::Lreal, at }, to, at)
     }
 
-    /// A millisecond as often as the number says.
-    fn number_as_time(&mut self, e: Expr, at: Span) -> Option<Typed> {
-        let ms = Typed::constant(Value::Int(MILLISECOND), Type::Time, at).expr;
+    /// A unit of so many nanoseconds as often as the number says.
+    fn number_as_time(&mut self, e: Expr, unit: i128, at: Span) -> Option<Typed> {
+        let one = Typed::constant(Value::Int(unit), Type::Time, at).expr;
         let times = if e.ty.is_real() { Type::Lreal } else { Type::Lint };
         let e = converted(e, times);
         if let ExprKind::Const(Value::Int(n)) = &e.kind {
-            let ns = n.checked_mul(MILLISECOND).ok_or(constant::Fault::Overflow);
+            let ns = n.checked_mul(unit).ok_or(constant::Fault::Overflow);
             return match ns.and_then(|ns| constant::fit(Type::Time, ns)) {
                 Ok(ns) => Some(Typed::constant(Value::Int(ns), Type::Time, at)),
                 Err(fault) => self.constant_fault(fault, Type::Time, at),
             };
         }
-        let kind = ExprKind::Binary(BinaryOp::Mul, Box::new(ms), Box::new(e));
+        let kind = ExprKind::Binary(BinaryOp::Mul, Box::new(one), Box::new(e));
         Some(Typed::of(kind, Type::Time, at))
     }
 }

@@ -101,7 +101,9 @@ pub(super) fn convert(v: &Value, to: Type) -> Folded {
             let x = narrow(to, *x);
             Ok(x.is_finite().then_some(Value::Real(x)))
         }
-        (Value::Int(n), _) if to.is_integer() || to == Type::Time => fit(to, *n).map(|n| Some(Value::Int(n))),
+        (Value::Int(n), _) if to.is_integer() || to.stored() == Type::Time => {
+            fit(to, *n).map(|n| Some(Value::Int(n)))
+        }
         (Value::Real(x), _) if to.is_integer() || to == Type::Time => real_to_whole(x.round_ties_even(), to),
         _ => Ok(None),
     }
@@ -123,7 +125,7 @@ fn real_to_whole(x: f64, to: Type) -> Folded {
 /// True if a type holds the whole number.
 pub(super) fn fit(ty: Type, v: i128) -> Result<i128, Fault> {
     let (least, most) = match ty {
-        Type::Time => (i64::MIN.into(), i64::MAX.into()),
+        Type::Time | Type::Moment(_) => (i64::MIN.into(), i64::MAX.into()),
         _ => ty.bounds().unwrap_or((i128::MIN, i128::MAX)),
     };
     if v < least || v > most { Err(Fault::Overflow) } else { Ok(v) }

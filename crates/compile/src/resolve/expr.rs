@@ -98,6 +98,9 @@ impl Resolver<'_, '_> {
             Literal::Time(time) => {
                 Some(Typed::constant(Value::Int(i128::from(time.count())), Type::Time, at))
             }
+            Literal::Moment(moment, time) => {
+                Some(Typed::constant(Value::Int(i128::from(time.count())), Type::Moment(*moment), at))
+            }
             Literal::Str(s) => {
                 let Some(len) = u16::try_from(s.len()).ok().filter(|n| *n <= g7_engine::TEXT) else {
                     let what = say!("a text has at most {} bytes", g7_engine::TEXT);

@@ -24,6 +24,8 @@ mod charts;
 mod constant;
 mod expr;
 mod fb;
+mod made;
+mod moments;
 mod operator;
 mod process;
 mod refer;

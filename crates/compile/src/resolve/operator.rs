@@ -49,6 +49,7 @@ impl Resolver<'_, '_> {
             _ if a.literal && b.literal => self.literals(sign, a, b, at),
             _ if compares(sign) => self.comparison(sign, a, b, at),
             _ if a_bool || b_bool => self.wrong_operands(sign, &a, &b, at),
+            _ if a.expr.ty.is_moment() || b.expr.ty.is_moment() => self.with_moment(sign, a, b, at),
             _ if a.expr.ty == Type::Time || b.expr.ty == Type::Time => self.with_time(sign, a, b, at),
             Sign::Pow => self.power(a, b, at),
             _ => self.arithmetic(sign, a, b, at),
@@ -209,6 +210,11 @@ fn meeting(a: &Typed, b: &Typed) -> Option<Type> {
 fn help(sign: Sign, a: &Typed, b: &Typed) -> Option<Said> {
     let has = |ty: Type| [a, b].iter().any(|t| !t.literal && t.expr.ty == ty);
     let numbers = [a, b].iter().all(|t| t.literal || t.expr.ty.is_number());
+    if [a, b].iter().any(|t| t.expr.ty.is_moment()) {
+        return Some(say!(
+            "a duration is added to or taken from a TOD or a DT; the difference of two values of one type is a duration"
+        ));
+    }
     if has(Type::Time) && (a.literal || b.literal) {
         return Some(say!("write a duration, as in `5s`"));
     }

@@ -202,7 +202,7 @@ pub(super) fn zero(ty: Type) -> Value {
         Some(Holds::Truth) | None => Value::Bool(false),
         Some(Holds::Real) => Value::Real(0.0),
         Some(Holds::Text) => Value::Str("".into()),
-        Some(Holds::Signed | Holds::Unsigned | Holds::Bits | Holds::Time) => Value::Int(0),
+        Some(Holds::Signed | Holds::Unsigned | Holds::Bits | Holds::Time | Holds::Moment(_)) => Value::Int(0),
     }
 }
 

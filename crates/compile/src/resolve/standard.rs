@@ -5,8 +5,8 @@
 
 use g7_engine::Builtin;
 use g7_model::{
-    Arg, BinaryOp as Sign, FunctionRow, Name, Operands, Problem, Said, Span, StandardFunction, Type, codes,
-    say,
+    Arg, BinaryOp as Sign, FunctionRow, Moment, Name, Operands, Problem, Said, Span, StandardFunction, Type,
+    codes, say,
 };
 
 use super::constant;
@@ -51,6 +51,10 @@ enum Way {
     Move,
     /// TRUNC.
     Truncate,
+    /// DAY_OF_WEEK.
+    DayOfWeek,
+    /// CONCAT_DATE_TOD.
+    DayWithTime,
     /// As a function of the tables.
     Builtin(Builtin, Shape),
 }
@@ -62,6 +66,8 @@ fn way(function: StandardFunction) -> Way {
         F::Not => return Way::Not,
         F::Move => return Way::Move,
         F::Trunc => return Way::Truncate,
+        F::DayOfWeek => return Way::DayOfWeek,
+        F::ConcatDateTod => return Way::DayWithTime,
         F::Abs => (Builtin::Abs, Shape::Number),
         F::Sqrt => (Builtin::Sqrt, Shape::Real),
         F::Ln => (Builtin::Ln, Shape::Real),
@@ -125,6 +131,16 @@ impl Resolver<'_, '_> {
                 t
             }),
             Way::Truncate => self.truncate(given.first()?, hint, at),
+            Way::DayOfWeek => {
+                let day = self.value(&given.first()?.value, Type::Moment(Moment::Date))?;
+                self.day_of_week(day, at)
+            }
+            Way::DayWithTime => {
+                let [day, time] = given.as_slice() else { return None };
+                let day = self.value(&day.value, Type::Moment(Moment::Date));
+                let time = self.value(&time.value, Type::Moment(Moment::Tod));
+                self.day_with_time(day?, time?, at)
+            }
             Way::Builtin(function, shape) => self.builtin(function, shape, row, &given, hint, at),
         }
     }
@@ -331,11 +347,12 @@ fn shared(typed: &[Typed], shape: Shape, hint: Option<Type>) -> Option<Type> {
         Some(t) if real && t.is_integer() => common(t, Type::Real)?,
         Some(t) => t,
     };
+    let measured = ty.is_number() || ty == Type::Time;
     let fits = match shape {
-        Shape::Number => ty.is_number() || ty == Type::Time,
+        Shape::Number => measured,
         Shape::Real if ty.is_integer() => return common(ty, Type::Real),
         Shape::Real => ty.is_real(),
-        Shape::Ordered | Shape::Limit => ty.is_number() || ty == Type::Time,
+        Shape::Ordered | Shape::Limit => measured || ty.is_moment(),
         _ => !matches!(ty, Type::Fb(_)),
     };
     fits.then_some(ty)

@@ -1,6 +1,6 @@
 //! Widening of types, and how a value takes the type that its place needs.
 
-use g7_model::{Problem, Said, Span, Type, codes, say};
+use g7_model::{Moment, Problem, Said, Span, Type, codes, say};
 
 use super::constant::{self, Fault, transferred};
 use super::resolver::Resolver;
@@ -236,6 +236,15 @@ fn wrong_type(e: &Expr, want: Type) -> Problem {
     }
 }
 
+/// How a constant of the type is written, for a message.
+fn example(moment: Moment) -> Said {
+    match moment {
+        Moment::Date => say!("write a date, as in `D#2026-11-28`"),
+        Moment::Tod => say!("write a time of day, as in `TOD#15:36:55`"),
+        Moment::Dt => say!("write a date with a time, as in `DT#2026-11-28-15:36:55`"),
+    }
+}
+
 fn wrong_literal(value: &Value, want: Type, at: Span) -> Problem {
     let what = match value {
         Value::Real(_) => say!("a real number"),
@@ -244,6 +253,7 @@ fn wrong_literal(value: &Value, want: Type, at: Span) -> Problem {
     let problem =
         Problem::new(&codes::WRONG_TYPE, at, say!("this is {what}, but {} is needed here", plain(want)));
     match (value, want) {
+        (_, Type::Moment(moment)) => problem.help(example(moment)),
         (_, Type::Time) => problem.help(say!("write a duration, as in `5s` or `200ms`")),
         (Value::Int(_), Type::Bool) => {
             problem.help(say!("of the numbers only 0 and 1 stand for FALSE and TRUE"))

@@ -258,6 +258,7 @@ fn literal(l: &Literal) -> String {
         Literal::Real(text, None) => clean(text),
         Literal::Real(text, Some(ty)) => format!("{ty}#{}", clean(text)),
         Literal::Time(time) => duration(*time),
+        Literal::Moment(moment, time) => moment.literal(*time),
         Literal::Str(text) => format!("'{}'", clean(text)),
     }
 }

@@ -61,6 +61,8 @@ pub(super) fn type_name(ty: Type) -> Option<String> {
             | FbKind::Sr
             | FbKind::Rs,
         ) => Some(ty.name().to_string()),
+        // Its dates are numbers in BCD, to the second.
+        Type::Moment(_) => None,
         Type::Sint | Type::Usint | Type::Lint | Type::Ulint | Type::Lword | Type::Lreal => None,
     }
 }
@@ -104,7 +106,9 @@ pub(super) fn has_function(standard: Option<StandardFunction>, upper: &str) -> b
             | F::Insert
             | F::Delete
             | F::Replace
-            | F::Find,
+            | F::Find
+            | F::ConcatDateTod
+            | F::DayOfWeek,
         ) => false,
         // A conversion; `Speech::printed` reports types that Control Expert does not have.
         None => upper

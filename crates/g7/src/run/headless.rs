@@ -238,7 +238,11 @@ fn nothing_moved(bench: &Bench, runner: &Runner) -> Said {
     let Some(input) = free().find(|i| i.kind == Kind::Bool).or_else(|| free().next()) else {
         return say!("nothing moved");
     };
-    let value = if input.kind == Kind::Time { "1s" } else { "1" };
+    let value = match input.kind {
+        Kind::Time => "1s".to_owned(),
+        Kind::Moment(moment) => moment.text(Nanos::ZERO),
+        _ => "1".to_owned(),
+    };
     let assign = format!("{}={value}@1s", input.name);
     let plain = |c: char| c.is_alphanumeric() || "_.=@".contains(c);
     let quote = if assign.chars().all(plain) { "" } else { "'" };

@@ -183,7 +183,7 @@ fn go_together(kind: Kind, ty: Type) -> bool {
     match kind {
         Kind::Bool => ty == Type::Boolean,
         Kind::Int { .. } => real || matches!(ty, Type::Int { .. }),
-        Kind::Real | Kind::Lreal | Kind::Time => real,
+        Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => real,
         Kind::Text => ty == Type::String,
     }
 }
@@ -218,8 +218,9 @@ fn taken(item: &Item, value: &Foreign) -> Option<Value> {
         (Kind::Int { .. }, Foreign::Real(r)) if r.fract() == 0.0 && r.abs() < 1e19 => int(*r as i128),
         (Kind::Real, Foreign::Real(r)) => Some(Value::Word(u64::from((*r as f32).to_bits()))),
         (Kind::Lreal, Foreign::Real(r)) => Some(Value::Word(r.to_bits())),
-        (Kind::Time, Foreign::Real(r)) if r.abs() < 9.2e9 => {
-            Some(Value::Word((r * 1e9).round() as i64 as u64))
+        (Kind::Time | Kind::Moment(_), Foreign::Real(r)) if r.abs() < 9.2e9 => {
+            let word = (r * 1e9).round() as i64 as u64;
+            item.kind.admits(word).then_some(Value::Word(word))
         }
         (Kind::Text, Foreign::Text(t)) => Some(Value::Text(t.as_str().into())),
         _ => None,

@@ -49,7 +49,7 @@ impl Changes {
     pub(super) fn get(&self, i: usize, kind: Kind) -> (Nanos, Value) {
         let value = match kind {
             Kind::Text => Value::Text(read_text(&self.value(i).collect::<Vec<u64>>(), 0).into()),
-            Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+            Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => {
                 Value::Word(self.value(i).next().unwrap_or(0))
             }
         };

@@ -148,10 +148,12 @@ fn lane(recording: &Recording, index: usize, signal: &Signal, grid: &Grid) -> La
     let (cells, note) = match signal.kind {
         Kind::Bool => (logic(recording, index, grid), String::new()),
         Kind::Real | Kind::Lreal => curve(recording, index, signal.kind, grid),
-        Kind::Int { .. } | Kind::Time if changes > grid.columns / 5 => {
+        Kind::Int { .. } | Kind::Time | Kind::Moment(_) if changes > grid.columns / 5 => {
             curve(recording, index, signal.kind, grid)
         }
-        Kind::Int { .. } | Kind::Time | Kind::Text => (bus(recording, index, signal.kind, grid), last),
+        Kind::Int { .. } | Kind::Time | Kind::Moment(_) | Kind::Text => {
+            (bus(recording, index, signal.kind, grid), last)
+        }
     };
     Lane { signal: index, label: shorten(&signal.name, LABEL), cells, note }
 }

@@ -8,7 +8,7 @@ use super::{Kind, Recording, Value};
 
 /// Writes one row for each instant at which a signal changed, with the values of all signals.
 ///
-/// The first column is the time in seconds. BOOL is 0 or 1, TIME is in seconds.
+/// The first column is the time in seconds. BOOL is 0 or 1, TIME is in seconds, a date and a time of day are written out.
 ///
 /// # Errors
 ///
@@ -34,12 +34,14 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// A value as a cell: BOOL is 0 or 1, TIME is in seconds.
+/// A value as a cell: BOOL is 0 or 1, TIME is in seconds, a date and a time of day are written out.
 pub fn csv_cell(value: &Value, kind: Kind) -> String {
     match kind {
         Kind::Bool => value.word().to_string(),
         Kind::Time => Nanos::new(value.word() as i64).in_seconds(),
-        Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Text => csv_quote(&value.show(kind)),
+        Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Moment(_) | Kind::Text => {
+            csv_quote(&value.show(kind))
+        }
     }
 }
 

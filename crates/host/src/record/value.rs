@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use g7_model::Nanos;
+use g7_model::{Moment, Nanos};
 
 /// How the words of a signal are to be read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,6 +22,8 @@ pub enum Kind {
     Lreal,
     /// A signed number of nanoseconds.
     Time,
+    /// A date, a time of day, or both: a signed number of nanoseconds.
+    Moment(Moment),
     /// UTF-8 text.
     Text,
 }
@@ -33,6 +35,26 @@ pub enum Value {
     Word(u64),
     /// A text.
     Text(Arc<str>),
+}
+
+impl Kind {
+    /// The unit of a value that is a time, where it is a number elsewhere: the millisecond of a TIME, and that of
+    /// [`Moment::unit`].
+    pub const fn unit(self) -> Option<Nanos> {
+        match self {
+            Kind::Time => Some(Nanos::MILLISECOND),
+            Kind::Moment(moment) => Some(moment.unit()),
+            Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Text => None,
+        }
+    }
+
+    /// True if a signal of this kind can have the value of a word: a DATE is whole days, a TOD less than one.
+    pub const fn admits(self, word: u64) -> bool {
+        match self {
+            Kind::Moment(moment) => moment.admits(Nanos::new(word as i64)),
+            Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Text => true,
+        }
+    }
 }
 
 impl Value {
@@ -53,12 +75,12 @@ impl Value {
             Kind::Int { signed: false, .. } => w as f64,
             Kind::Real => f64::from(f32::from_bits(w as u32)),
             Kind::Lreal => f64::from_bits(w),
-            Kind::Time => Nanos::new(w as i64).as_seconds(),
+            Kind::Time | Kind::Moment(_) => Nanos::new(w as i64).as_seconds(),
             Kind::Text => 0.0,
         }
     }
 
-    /// The value as text for the user: `TRUE`, `-3`, `2.5`, `1s500ms`, `text`.
+    /// The value as text for the user: `TRUE`, `-3`, `2.5`, `1s500ms`, `2026-11-28`, `text`.
     pub fn show(&self, kind: Kind) -> String {
         let w = self.word();
         match (self, kind) {
@@ -69,6 +91,7 @@ impl Value {
             (_, Kind::Real) => f32::from_bits(w as u32).to_string(),
             (_, Kind::Lreal) => f64::from_bits(w).to_string(),
             (_, Kind::Time) => Nanos::new(w as i64).plain(),
+            (_, Kind::Moment(moment)) => moment.text(Nanos::new(w as i64)),
             (_, Kind::Text) => String::new(),
         }
     }

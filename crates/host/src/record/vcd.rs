@@ -69,7 +69,7 @@ fn write_scopes(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
             Kind::Bool => ("wire", 1),
             Kind::Int { bits, signed: false } => ("wire", bits),
             Kind::Int { bits, signed: true } => ("integer", bits),
-            Kind::Time => ("integer", 64),
+            Kind::Time | Kind::Moment(_) => ("integer", 64),
             Kind::Real | Kind::Lreal => ("real", 64),
             Kind::Text => ("string", 1),
         };
@@ -111,7 +111,7 @@ fn change(value: &Value, kind: Kind, id: &str) -> String {
             let mask = if bits >= 64 { u64::MAX } else { (1u64 << bits) - 1 };
             format!("b{:b} {id}", w & mask)
         }
-        Kind::Time => format!("b{w:b} {id}"),
+        Kind::Time | Kind::Moment(_) => format!("b{w:b} {id}"),
         Kind::Real | Kind::Lreal => format!("r{} {id}", real(value.number(kind))),
         Kind::Text => format!("s{} {id}", escape(&value.show(kind))),
     }

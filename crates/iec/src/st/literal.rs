@@ -1,7 +1,7 @@
 //! Reads constants in the text: type words in any case, and forms without a counterpart.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Path, Said, say};
+use g7_model::{Expr, ExprKind, Literal, Moment, Name, Path, Said, say};
 
 use super::lex::{Kind, Token};
 use super::parse::Parser;
@@ -32,8 +32,8 @@ impl Parser<'_> {
                 let time = constant::duration(value).map(Literal::Time);
                 self.read(token, time, text)
             }
-            "DATE" | "D" | "DT" | "DATE_AND_TIME" | "TOD" | "TIME_OF_DAY" | "LDT" | "LTOD" | "LDATE" => {
-                self.refuse(token, say!("`{text}`: there are no dates and times of day"))
+            _ if Moment::of_literal(&upper).is_some() => {
+                self.read(token, constant::typed(&format!("{upper}#{value}")), text)
             }
             "STRING" | "WSTRING" | "CHAR" | "WCHAR" => self.read(token, string(value), text),
             "BOOL" => match value.to_ascii_uppercase().as_str() {

@@ -524,6 +524,7 @@ fn literal_text(literal: &Literal) -> Text {
         Literal::Real(text, None) => (real(text), Ty::Real),
         Literal::Real(text, Some(ty)) => (format!("{ty}#{}", real(text)), Ty::Known(*ty)),
         Literal::Time(time) => (format!("{time:#}"), Ty::Known(Type::Time)),
+        Literal::Moment(moment, time) => (moment.literal(*time), Ty::Known(Type::Moment(*moment))),
         Literal::Str(text) => (string(text), Ty::Known(Type::STRING)),
     };
     let strength = if text.starts_with('-') { 8 } else { BinaryOp::TIGHTEST };

@@ -16,7 +16,6 @@ pub(crate) const MOST_DIMENSIONS: usize = 16;
 /// An elementary type or standard function block by its name in capitals.
 pub fn elementary(upper: &str) -> Option<Type> {
     match upper {
-        "LTIME" => Some(Type::Time),
         "WSTRING" => Some(Type::STRING),
         _ => Type::named(upper),
     }
@@ -97,11 +96,6 @@ impl Parser<'_> {
                 self.bump();
                 self.eat_word("TO");
                 return self.shape(of, types);
-            }
-            "DATE" | "DT" | "DATE_AND_TIME" | "TOD" | "TIME_OF_DAY" | "LDT" | "LTOD" | "LDATE" => {
-                self.say(&codes::NOT_CARRIED, &at, say!("there are no dates and times of day"));
-                self.bump();
-                return Shape::Simple(Type::Time, None);
             }
             _ => {}
         }

@@ -1,7 +1,7 @@
 //! The words of expressions, and what the words of other tables do: qualifiers, types, profiles, switches.
 
 use super::row::{Told, Word};
-use crate::{FbKind, Qualifier, Switch, Type};
+use crate::{FbKind, Moment, Qualifier, Switch, Type};
 
 /// Operators that are words.
 pub const OPERATOR: &[Word] = &[
@@ -144,6 +144,9 @@ pub const fn of_type(ty: Type) -> Told {
         Type::Real => ["a real number, 32 bits", "un réel, 32 bits", "um número real, 32 bits"],
         Type::Lreal => ["a real number, 64 bits", "un réel, 64 bits", "um número real, 64 bits"],
         Type::Time => ["a duration", "une durée", "uma duração"],
+        Type::Moment(Moment::Date) => ["a day", "un jour", "um dia"],
+        Type::Moment(Moment::Tod) => ["a time of day", "une heure du jour", "uma hora do dia"],
+        Type::Moment(Moment::Dt) => ["a day with a time", "un jour et une heure", "um dia com hora"],
         Type::String(_) => ["a text", "un texte", "um texto"],
         Type::Fb(FbKind::Ctu) => ["counts up", "compteur", "contador crescente"],
         Type::Fb(FbKind::Ctd) => ["counts down", "décompteur", "contador decrescente"],

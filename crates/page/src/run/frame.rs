@@ -199,7 +199,7 @@ pub fn show(program: &Program, state: &mut State, binding: &Binding) -> Show {
         Type::String(_) => Show::Text(read_text(state.words(), word as u32)),
         Type::Real => Show::Number(rounded(f64::from(f32::from_bits(word as u32)))),
         Type::Lreal => Show::Number(rounded(f64::from_bits(word))),
-        Type::Time => Show::Number(Nanos::new(word as i64).as_seconds()),
+        Type::Time | Type::Moment(_) => Show::Number(Nanos::new(word as i64).as_seconds()),
         Type::Ulint | Type::Lword => Show::Number(word as f64),
         _ => Show::Number(word as i64 as f64),
     }

@@ -73,7 +73,9 @@ fn picture(part: &Recording) -> String {
         kind: match signal.kind {
             Kind::Bool if signal.group == "steps" => g7_draw::LaneKind::Step,
             Kind::Bool => g7_draw::LaneKind::Bool,
-            Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => g7_draw::LaneKind::Number,
+            Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => {
+                g7_draw::LaneKind::Number
+            }
             Kind::Text => g7_draw::LaneKind::Text,
         },
         edges: part

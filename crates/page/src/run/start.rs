@@ -164,7 +164,7 @@ impl Run {
                 Kind::Bool => SignalType::Bool,
                 Kind::Int { .. } => SignalType::Int,
                 Kind::Real | Kind::Lreal => SignalType::Real,
-                Kind::Time => SignalType::Time,
+                Kind::Time | Kind::Moment(_) => SignalType::Time,
                 Kind::Text => SignalType::Text,
             },
             declared: item.declared(),

@@ -155,6 +155,7 @@ pub(super) fn kind(ty: Type) -> Option<Kind> {
         Holds::Real if ty == Type::Real => Kind::Real,
         Holds::Real => Kind::Lreal,
         Holds::Time => Kind::Time,
+        Holds::Moment(moment) => Kind::Moment(moment),
         Holds::Text => Kind::Text,
     })
 }

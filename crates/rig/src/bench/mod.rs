@@ -481,7 +481,7 @@ fn stands<'a>(words: &'a [u64], item: &Item) -> Sample<'a> {
     let at = item.addr as usize;
     match item.kind {
         Kind::Text => Sample::Text(words.get(at..at + item.words as usize).unwrap_or(&[])),
-        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => {
             Sample::Word(words.get(at).copied().unwrap_or(0))
         }
     }
@@ -490,7 +490,7 @@ fn stands<'a>(words: &'a [u64], item: &Item) -> Sample<'a> {
 fn read(state: &State, item: &Item) -> Value {
     match item.kind {
         Kind::Text => Value::Text(read_text(state.words(), item.addr).into()),
-        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => {
             Value::Word(state.word(Addr(item.addr)))
         }
     }

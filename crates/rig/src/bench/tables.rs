@@ -92,7 +92,7 @@ fn places(symbols: &Symbols, inner: &str) -> Vec<Vec<Cell>> {
 fn part(cells: &[Cell], state: &State) -> String {
     let value = |c: &Cell| match c.kind {
         Kind::Text => Value::Text(read_text(state.words(), c.addr.0).into()),
-        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time => {
+        Kind::Bool | Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => {
             Value::Word(state.word(c.addr))
         }
     };
@@ -102,7 +102,7 @@ fn part(cells: &[Cell], state: &State) -> String {
             let text = format!("{:.2}", value(c).number(c.kind));
             text.trim_end_matches('0').trim_end_matches('.').to_owned()
         }
-        Kind::Int { .. } | Kind::Time | Kind::Text => value(c).show(c.kind),
+        Kind::Int { .. } | Kind::Time | Kind::Moment(_) | Kind::Text => value(c).show(c.kind),
     };
     let attributes: Vec<String> = cells.iter().filter(|c| !c.position).map(show).collect();
     let position = cells.iter().find(|c| c.position).map(show);

@@ -450,7 +450,7 @@ fn convert(word: u64, from: Type, item: &Item) -> Option<Value> {
         Type::Bool => u64::from(word != 0),
         Type::Real => u64::from((number(word) as f32).to_bits()),
         Type::Lreal => number(word).to_bits(),
-        Type::Time => word,
+        Type::Time | Type::Moment(_) => word,
         ty => {
             let (least, most) = ty.bounds()?;
             let n = whole(word)?;

@@ -150,6 +150,7 @@ pub fn value(ty: Type, words: &[u64]) -> Expr {
         Some(Holds::Unsigned | Holds::Bits) => Literal::Int(i128::from(word), None),
         Some(Holds::Real) if ty == Type::Real => real(format!("{:?}", f32::from_bits(word as u32))),
         Some(Holds::Real) => real(format!("{:?}", f64::from_bits(word))),
+        Some(Holds::Moment(moment)) => Literal::Moment(moment, Nanos::new(word as i64)),
         Some(Holds::Time) => Literal::Time(Nanos::new(word as i64)),
         Some(Holds::Text) => Literal::Str(read_text(words, 0).into()),
     }))

@@ -321,6 +321,7 @@ fn judge_lines(body: &[TestStmt], lines: &[Line], bench: &Bench, problems: &mut 
 fn fits(from: Type, to: Type, e: &Expr) -> bool {
     let number = |t: Type| t.is_integer() || t.is_real();
     match (from, to) {
+        (Type::Moment(from), Type::Moment(to)) => from == to,
         (Type::Bool, Type::Bool) | (Type::Time, Type::Time) | (Type::String(_), Type::String(_)) => true,
         (from, Type::Bool) => from.is_integer() && is_bit(e),
         (from, to) if from.is_real() => to.is_real(),

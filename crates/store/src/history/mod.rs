@@ -31,6 +31,7 @@ mod tests;
 mod writer;
 
 use g7_host::Kind;
+use g7_model::Moment;
 
 pub use clock::Clock;
 pub use lanes::{Lane, Piece, lane};
@@ -82,6 +83,7 @@ fn kind_word(kind: Kind) -> String {
         Kind::Real => "f32".to_owned(),
         Kind::Lreal => "f64".to_owned(),
         Kind::Time => "time".to_owned(),
+        Kind::Moment(moment) => moment.name().to_ascii_lowercase(),
         Kind::Text => "text".to_owned(),
     }
 }
@@ -93,6 +95,9 @@ fn kind_of(word: &str) -> Option<Kind> {
         "f32" => Kind::Real,
         "f64" => Kind::Lreal,
         "time" => Kind::Time,
+        "date" => Kind::Moment(Moment::Date),
+        "tod" => Kind::Moment(Moment::Tod),
+        "dt" => Kind::Moment(Moment::Dt),
         _ => {
             let (sign, bits) = word.split_at_checked(1)?;
             let bits = bits.parse().ok().filter(|bits| [8, 16, 32, 64].contains(bits))?;

@@ -35,7 +35,7 @@ impl Packed {
         let after = at.abs_diff(self.stop);
         match self.kind {
             Kind::Bool => put(&mut self.data, u128::from(after) << 1 | u128::from(word & 1)),
-            Kind::Int { .. } | Kind::Time | Kind::Text => {
+            Kind::Int { .. } | Kind::Time | Kind::Moment(_) | Kind::Text => {
                 put(&mut self.data, u128::from(after));
                 let moved = word.wrapping_sub(self.last) as i64;
                 put(&mut self.data, u128::from((moved << 1 ^ moved >> 63) as u64));
@@ -123,7 +123,7 @@ impl Iterator for Changes<'_> {
                 self.word = (head & 1) as u64;
                 head >> 1
             }
-            Kind::Int { .. } | Kind::Time | Kind::Text => {
+            Kind::Int { .. } | Kind::Time | Kind::Moment(_) | Kind::Text => {
                 let moved = u64::try_from(take(&mut self.data)?).ok()?;
                 let moved = (moved >> 1) as i64 ^ -((moved & 1) as i64);
                 self.word = self.word.wrapping_add(moved as u64);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use g7_host::{Kind, Value};
-use g7_model::Nanos;
+use g7_model::{Moment, Nanos};
 
 use super::packed::{Changes, Packed};
 use super::{Clock, Limits, Overview, Piece, Reader, Seen, Signal, Writer, kind_of, kind_word, lane};
@@ -63,6 +63,9 @@ const KINDS: [Kind; 6] = [
     Kind::Real,
     Kind::Lreal,
     Kind::Time,
+    Kind::Moment(Moment::Date),
+    Kind::Moment(Moment::Tod),
+    Kind::Moment(Moment::Dt),
 ];
 
 /// A word of a kind; every kind has its strange ones.
@@ -71,7 +74,7 @@ fn word(kind: Kind, random: &mut Random) -> u64 {
     match kind {
         Kind::Bool => any & 1,
         Kind::Int { bits: 16, .. } => (any as i16) as i64 as u64,
-        Kind::Int { .. } | Kind::Time | Kind::Text => match any % 4 {
+        Kind::Int { .. } | Kind::Time | Kind::Moment(_) | Kind::Text => match any % 4 {
             0 => u64::MAX,
             1 => i64::MIN as u64,
             _ => any >> (any % 60),

@@ -8,7 +8,7 @@ use crate::lexer::{Tok, Token};
 use crate::words;
 use g7_iec::constant;
 use g7_model::{
-    Arg, BinaryOp, Expr, ExprKind, Fix, Literal, Name, Path, Problem, Said, Span, UnaryOp, codes, say,
+    Arg, BinaryOp, Expr, ExprKind, Fix, Literal, Name, Path, Problem, Said, Span, Type, UnaryOp, codes, say,
 };
 
 /// The largest height of an expression's tree.
@@ -291,7 +291,10 @@ impl Parser<'_> {
         };
         read.map_err(|what| {
             let at = self.span_of(token);
-            self.lexer.problems.add(at, || Problem::new(&codes::BAD_NUMBER, at, what));
+            let moment =
+                matches!(constant::literal_type(text.split('#').next().unwrap_or("")), Some(Type::Moment(_)));
+            let code = if moment { &codes::BAD_DURATION } else { &codes::BAD_NUMBER };
+            self.lexer.problems.add(at, || Problem::new(code, at, what));
         })
         .ok()
     }

@@ -292,9 +292,6 @@ impl Parser<'_> {
             problem.help(match (&*upper, words::similar(word, &names)) {
                 ("ARRAY", _) => say!("an array is declared in a chart or in the file"),
                 ("STRUCT", _) => say!("a structure has a name: `struct Motor {{ speed : REAL }}`"),
-                ("DATE" | "TOD" | "DT" | "TIME_OF_DAY" | "DATE_AND_TIME" | "LTIME", _) => {
-                    say!("the only type of times is TIME")
-                }
                 (_, Some(near)) => say!("did you mean `{near}`?"),
                 // A variable or a member can be of a type of the file, so this is neither.
                 _ => say!(

@@ -192,6 +192,7 @@ impl<'a> Printer<'a> {
             Literal::Real(text, None) => text.to_string(),
             Literal::Real(text, Some(ty)) => format!("{ty}#{text}"),
             Literal::Time(time) => time.to_string(),
+            Literal::Moment(moment, time) => moment.literal(*time),
             Literal::Str(text) => constant::quote_st(text),
         };
         self.push(&text);
@@ -209,7 +210,7 @@ impl<'a> Printer<'a> {
         }
         let same = match literal {
             Literal::Int(v, None) => constant::integer(text).as_ref() == Ok(v),
-            Literal::Int(_, Some(_)) | Literal::Real(_, Some(_)) => {
+            Literal::Int(_, Some(_)) | Literal::Real(_, Some(_)) | Literal::Moment(..) => {
                 constant::typed(text).as_ref() == Ok(literal)
             }
             Literal::Real(v, None) => constant::real(text).as_ref() == Ok(v),

@@ -1,8 +1,8 @@
 //! Random names, expressions and statements.
 
 use g7_model::{
-    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Literal, Local, Name, Nanos, Path, Place, Span,
-    Stmt, StmtKind, Type, UnaryOp,
+    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Literal, Local, Moment, Name, Nanos, Path, Place,
+    Span, Stmt, StmtKind, Type, UnaryOp,
 };
 use proptest::prelude::*;
 
@@ -109,6 +109,7 @@ pub(crate) fn ty() -> impl Strategy<Value = Type> {
         Just(Type::Ulint),
         Just(Type::Lreal),
         Just(Type::Time),
+        prop::sample::select(Moment::ALL.to_vec()).prop_map(Type::Moment),
         (0u16..300).prop_map(Type::String),
         prop::sample::select(FbKind::ALL.to_vec()).prop_map(Type::Fb),
     ]
@@ -136,6 +137,9 @@ fn literal() -> impl Strategy<Value = Literal> {
         "[0-9]{1,4}[eE][-+]?[0-9]{1,2}".prop_map(|t| Literal::Real(t.into(), None)),
         "-?[0-9]{1,4}(\\.[0-9]{1,4})?".prop_map(|t| Literal::Real(t.into(), Some(Type::Real))),
         duration().prop_map(Literal::Time),
+        any::<i64>().prop_map(|v| Literal::Moment(Moment::Dt, Nanos::new(v))),
+        (0..Nanos::DAY.count()).prop_map(|v| Literal::Moment(Moment::Tod, Nanos::new(v))),
+        (-106_751..106_752i64).prop_map(|v| Literal::Moment(Moment::Date, Nanos::DAY * v)),
         text().prop_map(Literal::Str),
     ]
 }

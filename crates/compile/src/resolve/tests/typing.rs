@@ -7,6 +7,7 @@ const DOCUMENT: &str = "
 input a, b : BOOL
 var s : SINT  var n, m : INT  var d : DINT  var l : LINT
 var us : USINT  var u : UINT  var ud : UDINT  var ul : ULINT  var bs : BYTE  var wo : WORD
+var da, db : DATE  var td : TOD  var dt, du : DT
 var x, y : REAL  var z : LREAL  var t : TIME  var w : STRING  var v : STRING(10)
 var c : CTU
 const five : INT := 5
@@ -224,12 +225,12 @@ fn bit_strings() {
 #[test]
 fn decimal_digits() {
     check(&[
-        ("WORD_BCD_TO_UINT(wo)", "WORD_BCD_TO_UINT(wo) : UINT"),
-        ("BCD_TO_INT(bs)", "BYTE_BCD_TO_INT(bs) : INT"),
+        ("WORD_BCD_TO_UINT(wo)", "@WORD_BCD_TO_UINT(wo) : UINT"),
+        ("BCD_TO_INT(bs)", "@BYTE_BCD_TO_INT(bs) : INT"),
         ("BCD_TO_INT(16#1987)", "1987 : INT"),
         ("bcd_to_sint(BYTE#16#99)", "99 : SINT"),
-        ("INT_TO_BCD(n)", "INT_TO_BCD_WORD(n) : WORD"),
-        ("INT_TO_BCD_BYTE(n)", "INT_TO_BCD_BYTE(n) : BYTE"),
+        ("INT_TO_BCD(n)", "@INT_TO_BCD_WORD(n) : WORD"),
+        ("INT_TO_BCD_BYTE(n)", "@INT_TO_BCD_BYTE(n) : BYTE"),
         ("UINT_TO_BCD_WORD(1987)", "6535 : WORD"),
         ("BCD_TO_INT(16#1A)", "G0212"),
         ("WORD_BCD_TO_SINT(16#128)", "G0212"),
@@ -238,6 +239,58 @@ fn decimal_digits() {
         ("BCD_TO_INT(n)", "G0209"),
         ("WORD_BCD_TO_UINT()", "G0215"),
         ("INT_BCD_TO_INT(n)", "G0202"),
+    ]);
+}
+
+/// IEC 61131-3:2003, tables 22 and 30; 2013, table 36; decision 65.
+#[test]
+fn dates_and_times_of_day() {
+    check(&[
+        ("da - db", "(TIME(da) Sub TIME(db)) : TIME"),
+        ("td - TOD#12:00:00", "(TIME(td) Sub 43200000000000) : TIME"),
+        ("SUB_DT_DT(dt, du)", "(TIME(dt) Sub TIME(du)) : TIME"),
+        ("dt + 5s", "DT((TIME(dt) Add 5000000000)) : DT"),
+        ("ADD_DT_TIME(dt, t)", "DT((TIME(dt) Add t)) : DT"),
+        ("td - t", "@TIME_within_a_day((TIME(td) Sub t)) : TOD"),
+        ("TOD#12:00:00 + 5h", "61200000000000 : TOD"),
+        ("D#1970-01-02", "86400000000000 : DATE"),
+        ("da < D#1970-01-02", "(da Lt 86400000000000) : BOOL"),
+        ("dt = du", "(dt Eq du) : BOOL"),
+        ("MAX(dt, du)", "Max(dt, du) : DT"),
+        ("LIMIT(TOD#6:00, td, TOD#22:00)", "Limit(21600000000000, td, 79200000000000) : TOD"),
+        ("SEL(a, da, db)", "Sel(a, da, db) : DATE"),
+        ("MOVE(td)", "td : TOD"),
+        ("DT_TO_DATE(dt)", "@DT_TO_DATE(TIME(dt)) : DATE"),
+        ("DATE_AND_TIME_TO_TIME_OF_DAY(dt)", "@DT_TO_TOD(TIME(dt)) : TOD"),
+        ("DT_TO_DATE(DT#1969-12-31-23:00:00)", "-86400000000000 : DATE"),
+        ("DT_TO_TOD(DT#1969-12-31-23:00:00)", "82800000000000 : TOD"),
+        ("CONCAT_DATE_TOD(da, td)", "DT((TIME(da) Add TIME(td))) : DT"),
+        ("CONCAT_DATE_TOD(D#1970-01-02, TOD#0:00:01)", "86401000000000 : DT"),
+        ("DAY_OF_WEEK(D#2026-11-29)", "0 : INT"),
+        ("DAY_OF_WEEK(D#1969-12-31)", "3 : INT"),
+        ("DAY_OF_WEEK(da)", "@DAY_OF_WEEK(TIME(da)) : INT"),
+        ("DT_TO_UDINT(dt)", "UDINT((TIME(dt) Div 1000000000)) : UDINT"),
+        ("TOD_TO_UDINT(td)", "UDINT((TIME(td) Div 1000000)) : UDINT"),
+        ("UDINT_TO_DT(ud)", "DT((1000000000 Mul LINT(ud))) : DT"),
+        ("UDINT_TO_DATE(86401)", "86400000000000 : DATE"),
+        ("LTOD_TO_LTOD(td)", "td : TOD"),
+        ("UDINT_TO_TOD(86400000)", "G0212"),
+        ("TOD#23:00:00 + 1h", "G0212"),
+        ("DT#2262-04-11-00:00:00 + 24h", "G0212"),
+        ("da + db", "G0210"),
+        ("da + 24h", "G0210"),
+        ("t + dt", "G0210"),
+        ("dt * 2", "G0210"),
+        ("dt - td", "G0210"),
+        ("-dt", "G0210"),
+        ("da = dt", "G0210"),
+        ("da = 0", "G0210"),
+        ("ABS(dt)", "G0209"),
+        ("DT_TO_STRING(dt)", "G0202"),
+        ("DATE_TO_DT(da)", "G0202"),
+        ("DATE_TO_WORD(da)", "G0202"),
+        ("DAY_OF_WEEK(dt)", "G0209"),
+        ("DAY_OF_WEEK(5)", "G0209"),
     ]);
 }
 

@@ -235,7 +235,7 @@ impl Speech<'_, '_> {
             ExprKind::Literal(Literal::Int(..)) => Some(Sort::Int),
             ExprKind::Literal(Literal::Real(..)) => Some(Sort::Real),
             ExprKind::Literal(Literal::Str(_)) => Some(Sort::Text),
-            ExprKind::Literal(Literal::Time(_))
+            ExprKind::Literal(Literal::Time(_) | Literal::Moment(..))
             | ExprKind::Element(..)
             | ExprKind::List(_)
             | ExprKind::Bad => None,
@@ -317,6 +317,7 @@ fn literal(l: &Literal, at: Place) -> Result<(String, Strength), Refused> {
         },
         Literal::Real(text, _) => (text.to_string(), ATOM),
         Literal::Time(_) => return Err((at, say!("a duration"))),
+        Literal::Moment(..) => return Err((at, say!("a date or a time of day"))),
         Literal::Str(text) => (quoted(text), ATOM),
     })
 }

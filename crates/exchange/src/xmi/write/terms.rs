@@ -191,7 +191,7 @@ impl Writer<'_> {
                 Some(self.value("terms:BooleanConstant", Type::Bool, b.then(|| "true".into()), tag, place))
             }
             Literal::Int(n, _) => self.integer(e, *n, tag, place),
-            Literal::Real(..) | Literal::Time(_) | Literal::Str(_) => {
+            Literal::Real(..) | Literal::Time(_) | Literal::Moment(..) | Literal::Str(_) => {
                 self.cannot(e.at, say!("a constant that is neither Boolean nor a whole number"));
                 None
             }

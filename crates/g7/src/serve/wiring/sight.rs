@@ -179,7 +179,7 @@ fn carries(kind: Kind) -> &'static str {
     match kind {
         Kind::Bool => "bit",
         Kind::Int { .. } => "whole",
-        Kind::Real | Kind::Lreal | Kind::Time => "number",
+        Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => "number",
         Kind::Text => "text",
     }
 }

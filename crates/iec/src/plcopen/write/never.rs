@@ -78,7 +78,9 @@ pub(super) fn seconds(document: &mut Document, problems: &mut Vec<Problem>) {
         fn expr(&mut self, e: &mut Expr) {
             let ExprKind::Call(path, _) = &e.kind else { return };
             let name = path.text().to_ascii_uppercase();
-            if (name.starts_with("TIME_TO_") || name.ends_with("_TO_TIME")) && !name.contains("STRING") {
+            let from = ["TIME_TO_", "TOD_TO_", "TIME_OF_DAY_TO_"].iter().any(|word| name.starts_with(word));
+            let to = ["_TO_TIME", "_TO_TOD", "_TO_TIME_OF_DAY"].iter().any(|word| name.ends_with(word));
+            if (from || to) && !["STRING", "DT_TO", "DATE_AND"].iter().any(|word| name.contains(word)) {
                 let what = say!("{} counts in seconds there, and in milliseconds here", Said::foreign(name));
                 self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
             }

@@ -68,11 +68,14 @@ impl Datatype {
     pub(super) fn of(scaling: &Scaling) -> Datatype {
         match (scaling.holds, scaling.kind) {
             (Holds::Bit, _) => Datatype::Boolean,
-            (Holds::Whole { bits: 8 | 16, signed: true }, Kind::Int { .. } | Kind::Time) => {
-                Datatype::Whole { bits: 32, signed: true }
+            (
+                Holds::Whole { bits: 8 | 16, signed: true },
+                Kind::Int { .. } | Kind::Time | Kind::Moment(_),
+            ) => Datatype::Whole { bits: 32, signed: true },
+            (Holds::Whole { bits: 32, signed: false }, Kind::Int { .. } | Kind::Time | Kind::Moment(_)) => {
+                Datatype::LONG
             }
-            (Holds::Whole { bits: 32, signed: false }, Kind::Int { .. } | Kind::Time) => Datatype::LONG,
-            (Holds::Whole { bits, signed }, Kind::Int { .. } | Kind::Time) => {
+            (Holds::Whole { bits, signed }, Kind::Int { .. } | Kind::Time | Kind::Moment(_)) => {
                 Datatype::Whole { bits, signed }
             }
             (Holds::Single, _) => Datatype::Float,
