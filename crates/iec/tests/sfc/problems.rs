@@ -10,7 +10,7 @@ fn each_mistake_has_its_place() {
     let line = |at: u32| text[..at as usize].matches('\n').count() + 1;
     for (number, code, words) in [
         (5, "G0606", "expected `;`"),
-        (6, "G0604", "no dates"),
+        (6, "G0612", "no day 2026-02-30"),
         (7, "G0604", "no pointers"),
         (8, "G0604", "no type `Motor`"),
         (10, "G0606", "expected `;`"),
