@@ -56,7 +56,7 @@ impl Random {
     }
 }
 
-const KINDS: [Kind; 6] = [
+const KINDS: [Kind; 9] = [
     Kind::Bool,
     Kind::Int { bits: 16, signed: true },
     Kind::Int { bits: 64, signed: false },
