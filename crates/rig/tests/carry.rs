@@ -118,7 +118,7 @@ fn charts_of_function_blocks_go_on() {
         changed(&after, &after.replace("[1..3]", "[1..1]").replace("[2]", "[1]"), &[("go", 1)], 3);
     // The only step with this name has the short one.
     assert_eq!(situation(&bench, &carried.runner), "1");
-    assert!(texts(&carried.lost).contains(&"step `grip[2].Cycle.2` is active and no longer exists".into()));
+    assert!(texts(&carried.lost).contains(&"step `grip[2].Cycle.2` is active and no longer exists"));
 }
 
 #[test]
