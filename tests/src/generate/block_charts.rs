@@ -7,10 +7,10 @@ use super::sight::Sight;
 /// numbers come from a copy of the generator: the rest of the document does not depend on them.
 pub(super) fn block_charts(rng: &Rng, outside: &Sight, out: &mut String) {
     let mut rng = rng.clone();
-    for _ in 0..3 {
+    for _ in 0..4 {
         rng.bits();
     }
-    if !rng.percent(20) {
+    if !rng.percent(10) {
         return;
     }
     let (go, back) = (outside.boolean(&mut rng, 2), outside.boolean(&mut rng, 1));
@@ -21,7 +21,7 @@ pub(super) fn block_charts(rng: &Rng, outside: &Sight, out: &mut String) {
     out.push_str(&format!(
         "function block Twin {{\n  input at : BOOL\n  output on : BOOL\n  var left : INT := {most}\n{body}}}\n\
          chart Swing of Twin {{\n  var own : INT\n  initial step Rest\n  step Run {{\n    N on\n    P1 own := own + {by}\n  }}\n  \
-         Rest -> Run when at and own < 40\n  Run -> Rest when ({back}) or Count.Many.X\n}}\n\
+         Rest -> Run when at and own < 6\n  Run -> Rest when ({back}) or Count.Many.X\n}}\n\
          chart Count of Twin {{\n  var t : TON\n  initial step Few {{ each scan: t(IN := on, PT := 20ms) }}\n  step Many\n  \
          Few -> Many when t.Q or Swing.own > left\n  Many -> Few when not on and left > 0 or ({go})\n}}\n\
          struct Place {{\n  twin : Twin\n}}\n\

@@ -10,7 +10,7 @@ pub(super) fn dates(rng: &Rng, outside: &Sight, out: &mut String) {
     for _ in 0..3 {
         rng.bits();
     }
-    if !rng.percent(15) {
+    if !rng.percent(10) {
         return;
     }
     let (go, back) = (outside.boolean(&mut rng, 2), outside.boolean(&mut rng, 1));
