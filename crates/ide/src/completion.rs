@@ -106,9 +106,7 @@ impl Place<'_> {
         let around = self.around();
         let word = self.word(last).to_owned();
         match (last.kind, word.as_str()) {
-            (TokenKind::Note | TokenKind::Str | TokenKind::Comment, _) if last.end as u32 > self.at => {
-                Vec::new()
-            }
+            (TokenKind::Note | TokenKind::Str | TokenKind::Comment, _) if self.is_within(last) => Vec::new(),
             (TokenKind::PathDot, _) => self.members(),
             (TokenKind::Sign, ".") if self.joins(last) => self.members(),
             (TokenKind::Colon, _) if around == Around::Struct || self.declares() => {
@@ -156,6 +154,12 @@ impl Place<'_> {
             }
             _ => [self.values(), functions()].concat(),
         }
+    }
+
+    /// True if the place lies in a note or a text. A note that begins with `//` goes on up to the end of its line.
+    fn is_within(&self, last: &Token) -> bool {
+        let (end, at) = (last.end, self.at as usize);
+        end > at || end == at && self.word(last).starts_with("//")
     }
 
     /// True if a dot joins what is typed to what stands before it: nothing follows the dot yet, or it stands close

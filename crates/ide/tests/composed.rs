@@ -183,6 +183,22 @@ fn members_types_and_words_are_offered_where_they_can_stand() {
 }
 
 #[test]
+fn nothing_is_offered_in_a_note() {
+    for (text, offers) in [
+        ("// a note|", false),
+        ("// a note|\ninput a : BOOL\n", false),
+        ("input a : BOOL // n|\n", false),
+        ("(* a | note *)\n", false),
+        ("(* a note *) |\n", true),
+        ("// a note\n|\n", true),
+    ] {
+        let (text, place) = marked(text);
+        let open = file(&text);
+        assert_eq!(!complete(&open, place).items.is_empty(), offers, "{text}");
+    }
+}
+
+#[test]
 fn charts_of_function_blocks_are_offered_with_the_names_of_their_blocks() {
     const BLOCK: &str = "function block Gripper {\n  input close : BOOL\n}\nchart Cycle of Gripper {\n  initial step 1\n  step 2\n  1 -> 2 when close\n}\nstruct Pair { x : INT }\nvar grip : ARRAY[1..2] OF Gripper\nprove never grip[1].Cycle.X2\n";
     let cases: [(String, &[&str]); 4] = [
