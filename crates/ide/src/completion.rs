@@ -1,11 +1,10 @@
 //! Completion: the words that are possible at a place of the text.
 
 use g7_compile::references::{Declared, Kind, Member, Types, values};
-use g7_model::instances::drawn_for;
+use g7_model::instances::Drawings;
 use g7_model::words::{self, Told, Word};
 use g7_model::{
-    Chart, Composed, Document, Item, Name, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl,
-    VarKind, say,
+    Chart, Document, Item, Name, ProfileName, Qualifier, Said, StandardFunction, Type, VarDecl, VarKind, say,
 };
 use g7_rig::{LIBRARY, Part};
 use g7_syntax::{Token, TokenKind};
@@ -80,6 +79,22 @@ pub fn complete(file: &File, at: usize) -> Completion {
         }
     }
     Completion { from, items }
+}
+
+/// The type that an item declares.
+fn type_choice(item: &Item) -> Option<Choice> {
+    let (name, told) = match item {
+        Item::Composed(c) => {
+            let what = if c.block { say!("function block") } else { say!("structure") };
+            (&c.name, c.comment.as_deref().map_or(what, Said::foreign))
+        }
+        Item::Type(t) => {
+            let told = t.comment.as_deref().map_or_else(|| type_declaration(t), str::to_owned);
+            (t.names.first()?, Said::foreign(told))
+        }
+        _ => return None,
+    };
+    Some(choice(&name.text, "type", told, &g7_syntax::show_name(&name.text)))
 }
 
 fn is_word(kind: TokenKind) -> bool {
@@ -271,33 +286,13 @@ impl Place<'_> {
         if around == Around::Body || self.after("state") || self.after("parts") {
             return Vec::new();
         }
-        let shown = |c: &Composed| {
-            let what = if c.block { say!("function block") } else { say!("structure") };
-            let told = c.comment.as_deref().map_or(what, Said::foreign);
-            choice(&c.name.text, "type", told, &g7_syntax::show_name(&c.name.text))
-        };
-        let items = self.document.items.iter();
-        let one = |item: &Item| match item {
-            Item::Composed(c) => Some(shown(c)),
-            Item::Type(t) => {
-                let name = t.names.first()?;
-                let told = t.comment.as_deref().map_or_else(|| type_declaration(t), str::to_owned);
-                Some(choice(&name.text, "type", Said::foreign(told), &g7_syntax::show_name(&name.text)))
-            }
-            _ => None,
-        };
-        items.filter_map(one).collect()
+        self.document.items.iter().filter_map(type_choice).collect()
     }
 
     /// The function blocks that the file declares.
     fn blocks(&self) -> Vec<Choice> {
-        let block = |c: &Choice| {
-            self.document
-                .items
-                .iter()
-                .any(|i| matches!(i, Item::Composed(b) if b.block && *b.name.text == c.label))
-        };
-        self.composed(Around::File).into_iter().filter(block).collect()
+        let block = |i: &&Item| matches!(i, Item::Composed(c) if c.block);
+        self.document.items.iter().filter(block).filter_map(type_choice).collect()
     }
 
     /// The names before the dot, joined by dots, without their indexes.
@@ -339,7 +334,7 @@ impl Place<'_> {
         let own = block.and_then(|of| Member::named(of, first)).map(|m| types.kind_of(&m));
         let (kind, rest) = own.map(|kind| (kind, behind)).or_else(|| {
             let of_chart = behind.split_first().and_then(|(name, rest)| {
-                let v = types.variable(Some(drawn_for(self.document, first)), name)?;
+                let v = types.variable(Some(Drawings::of(self.document).drawn_for(first)), name)?;
                 Some((types.kind(v), rest))
             });
             let here = self.enclosing(Around::Chart).and_then(|c| types.variable(Some(c), first));
@@ -385,7 +380,7 @@ impl Place<'_> {
             return found;
         }
         let owner = owners.last().copied().unwrap_or("");
-        let owner = drawn_for(self.document, owner);
+        let owner = Drawings::of(self.document).drawn_for(owner);
         let mut found = Vec::new();
         for n in names(self.document) {
             let name = &*n.name.text;

@@ -56,7 +56,7 @@ pub enum Literal {
     Real(Box<str>, Option<Type>),
     /// A duration.
     Time(Nanos),
-    /// A date, a time of day, or both.
+    /// A date, a time of day, or a date with a time.
     Moment(Moment, Nanos),
     /// Text, escapes undone.
     Str(Box<str>),

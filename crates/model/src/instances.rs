@@ -85,18 +85,32 @@ pub fn uninstantiated(document: &Document) -> Cow<'_, Document> {
     Cow::Owned(own)
 }
 
-/// The chart that is drawn for a name: `Axis` for `Axis[3]`, and for `Lift` of `instance Lift : Axis(7)`; `Cycle` for
-/// `left.Cycle`, if it is a chart of a function block.
-pub fn drawn_for<'n>(document: &'n Document, name: &'n str) -> &'n str {
-    if let Some((_, chart)) = own_instances(document).find(|(own, _)| *own == name) {
-        return chart;
+/// The charts that are drawn for the names of instances.
+#[derive(Debug)]
+pub struct Drawings<'n> {
+    /// The instances that have a name of their own, each with its chart.
+    own: HashMap<&'n str, &'n str>,
+    /// The charts; true for one of a function block.
+    charts: HashMap<&'n str, bool>,
+}
+
+impl<'n> Drawings<'n> {
+    /// Those of a document.
+    pub fn of(document: &'n Document) -> Drawings<'n> {
+        let charts = document.charts().map(|c| (&*c.name.text, c.block.is_some()));
+        Drawings { own: own_instances(document).collect(), charts: charts.collect() }
     }
-    let of_block = || {
-        let (_, own) = name.rsplit_once('.')?;
-        document.charts().find(|c| c.block.is_some() && *c.name.text == *own)?;
-        document.charts().all(|c| *c.name.text != *name).then_some(own)
-    };
-    of_block().unwrap_or_else(|| chart_in(name))
+
+    /// The chart that is drawn for a name: `Axis` for `Axis[3]`, and for `Lift` of `instance Lift : Axis(7)`; `Cycle` for
+    /// `left.Cycle`, if it is a chart of a function block.
+    pub fn drawn_for(&self, name: &'n str) -> &'n str {
+        if let Some(chart) = self.own.get(name) {
+            return chart;
+        }
+        let of_block =
+            name.rsplit_once('.').map(|(_, own)| own).filter(|own| self.charts.get(own) == Some(&true));
+        of_block.filter(|_| !self.charts.contains_key(name)).unwrap_or_else(|| chart_in(name))
+    }
 }
 
 /// The instances that have a name of their own, each with its chart: `Lift` and `Axis` for `instance Lift : Axis(7)`.

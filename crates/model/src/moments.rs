@@ -80,8 +80,8 @@ impl Moment {
     ///
     /// # Errors
     ///
-    /// A text that is no such value, a day or a time that does not exist, a day outside of 1677-09-22 to 2262-04-11, a
-    /// fraction finer than a nanosecond.
+    /// The text is no such value; the day or the time does not exist; the day is not within 1677-09-22 to 2262-04-11; the
+    /// time has a fraction of a nanosecond.
     pub fn read(self, text: &str) -> Result<Nanos, Said> {
         match self {
             Moment::Date => day_of(text).and_then(|days| sum(days, 0)),
@@ -194,7 +194,7 @@ fn days_from(year: i64, month: i64, day: i64) -> i64 {
 fn civil(days: i64) -> (i64, i64, i64) {
     let days = days + ERA;
     let (cycle, of_cycle) = (days.div_euclid(CYCLE), days.rem_euclid(CYCLE));
-    // A leap day ends 4 years (1,460 days), but not 100 (36,524), and again 400 (146,096).
+    // Each 4 years (1,460 days) end with a leap day; each 100 years (36,524 days) do not; each 400 years (146,096 days) do.
     let of_century = (of_cycle - of_cycle / 1_460 + of_cycle / 36_524 - of_cycle / 146_096) / 365;
     let of_year = of_cycle - (365 * of_century + of_century / 4 - of_century / 100);
     let from_march = (5 * of_year + 2) / 153;

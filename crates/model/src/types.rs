@@ -37,7 +37,7 @@ pub enum Type {
     Lreal,
     /// A duration in signed 64-bit nanoseconds.
     Time,
-    /// A date, a time of day, or both, in signed 64-bit nanoseconds.
+    /// DATE, TOD or DT, in signed 64-bit nanoseconds.
     Moment(Moment),
     /// UTF-8 text of at most this many bytes.
     String(u16),
@@ -154,7 +154,7 @@ pub enum Holds {
     Real,
     /// A duration.
     Time,
-    /// A date, a time of day, or both.
+    /// A date, a time of day, or a date with a time.
     Moment(Moment),
     /// Text.
     Text,
@@ -267,8 +267,8 @@ impl Type {
         Type::ELEMENTARY.into_iter().map(Type::name).chain(blocks)
     }
 
-    /// Other names of types: the long ones of IEC 61131-3:2003, and those of IEC 61131-3:2013 for 64 bits, which all of these
-    /// have here (decision 65).
+    /// Other names of types: the long names of IEC 61131-3:2003, and the names of IEC 61131-3:2013 for types of 64 bits. The
+    /// types with the short names have 64 bits here (decision 65).
     pub const OTHER_NAMES: [(&'static str, Type); 8] = [
         ("LTIME", Type::Time),
         ("LDATE", Type::Moment(Moment::Date)),

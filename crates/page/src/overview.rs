@@ -5,7 +5,7 @@ use std::collections::HashMap;
 use g7_compile::resolve::{of_profile, with_switch};
 use g7_edit::ChartSort;
 use g7_ide::{File, OWN};
-use g7_model::instances::{drawn_for, own_instances};
+use g7_model::instances::{Drawings, own_instances};
 use g7_model::{Document, Nanos, ProfileName, Switch};
 use g7_rig::{Source, named};
 use serde::Serialize;
@@ -193,11 +193,12 @@ fn charts(file: &File) -> Vec<ChartRow> {
 
 /// The macro-step that a chart is the expansion of, or the step that encloses it: the first one, with its chart.
 fn owners(document: &Document) -> HashMap<&str, [&str; 2]> {
+    let drawings = Drawings::of(document);
     let mut owners = HashMap::new();
     for chart in document.charts() {
         for step in chart.steps() {
             for opened in opens(step) {
-                owners.entry(drawn_for(document, opened)).or_insert([&*chart.name.text, &*step.name.text]);
+                owners.entry(drawings.drawn_for(opened)).or_insert([&*chart.name.text, &*step.name.text]);
             }
         }
     }

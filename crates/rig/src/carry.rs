@@ -85,7 +85,7 @@ fn charts(
         lost.push(say!("the task `{task}` is being executed: it restarts"));
     }
     let path_kept = |path: &str| chart_of(path, &kept).is_some();
-    let tasks: BTreeSet<&str> = tasks(old.1).map(|t| &*t.name.text).collect();
+    let restarted: BTreeSet<&str> = tasks(old.1).map(|t| &*t.name.text).collect();
     let partners = partners(&was.symbols);
     let (mut steps, mut begin) = (Vec::new(), Vec::new());
     for step in (0..c.symbols.steps()).map(StepId) {
@@ -100,7 +100,7 @@ fn charts(
     let gone = |s: &StepId| was.symbols.is_listed(*s) && !taken.contains(s);
     for step in state.active().filter(gone) {
         // The loss of a task was reported already; do not report its steps again.
-        if chart_of(was.symbols.step_path(step), &tasks).is_none() {
+        if chart_of(was.symbols.step_path(step), &restarted).is_none() {
             lost.push(say!("step `{}` is active and no longer exists", was.symbols.step_name(step)));
         }
     }
@@ -147,8 +147,8 @@ fn tasks(document: &Document) -> impl Iterator<Item = &Chart> {
 fn at_work(document: &Document, was: &Compiled, state: &State) -> Vec<String> {
     let initial = &was.program.tables().initial;
     let busy = |task: &str| {
-        let names = BTreeSet::from([task]);
-        let own = |s: &StepId| chart_of(was.symbols.step_path(*s), &names).is_some();
+        let within = |path: &str| path.strip_prefix(task).is_some_and(|rest| rest.starts_with('.'));
+        let own = |s: &StepId| within(was.symbols.step_path(*s));
         state.active().filter(own).any(|s| !initial.contains(&s))
     };
     tasks(document).map(|t| t.name.text.to_string()).filter(|t| busy(t)).collect()

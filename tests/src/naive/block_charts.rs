@@ -83,7 +83,7 @@ pub(super) fn charts_within<'d>(doc: &'d Document, made: &Made<'d>) -> Run<Vec<M
 }
 
 impl Model {
-    /// Where a name stands that a chart of a function block takes from its block: `left.close` for `close`.
+    /// The variable of the instance that its chart names without a path: `left.close` for `close`, with its scope.
     pub(super) fn of_block(&self, scope: ScopeId, names: &[&str]) -> Option<(ScopeId, Vec<String>)> {
         let home = self.scopes[scope].home.as_ref()?;
         let (first, rest) = names.split_first()?;

@@ -225,23 +225,24 @@ impl Resolver<'_, '_> {
         Some(Typed::of(ExprKind::Convert(Box::new(e)), to, at))
     }
 
+    /// The number of units of so many nanoseconds in a duration.
     fn time_as_number(&mut self, time: Expr, to: Type, unit: i128, at: Span) -> Option<Typed> {
         if to.is_integer() {
-            let unit_constant = Typed::constant(Value::Int(unit), Type::Lint, at).expr;
+            let one = Typed::constant(Value::Int(unit), Type::Lint, at).expr;
             let whole = match &time.kind {
                 ExprKind::Const(Value::Int(ns)) => {
                     Typed::constant(Value::Int(ns / unit), Type::Time, at).expr
                 }
                 _ => {
-                    let kind = ExprKind::Binary(BinaryOp::Div, Box::new(time), Box::new(unit_constant));
+                    let kind = ExprKind::Binary(BinaryOp::Div, Box::new(time), Box::new(one));
                     Expr { kind, ty: Type::Time, at }
                 }
             };
             return self.convert(whole, to, at);
         }
         let ns = converted(time, Type::Lreal);
-        let ms = Typed::constant(Value::Real(unit as f64), Type::Lreal, at).expr;
-        let kind = ExprKind::Binary(BinaryOp::Div, Box::new(ns), Box::new(ms));
+        let one = Typed::constant(Value::Real(unit as f64), Type::Lreal, at).expr;
+        let kind = ExprKind::Binary(BinaryOp::Div, Box::new(ns), Box::new(one));
         self.convert(Expr { kind, ty: Type::Lreal, at }, to, at)
     }
 

@@ -1,7 +1,7 @@
 //! Dates and times of day: what is computed with them (IEC 61131-3:2003, tables 22 and 30; 2013, tables 35 and 36).
 //!
-//! Their values are nanoseconds, as those of TIME. Here alone it is told what a type of them may be added to; behind this
-//! stage they are durations (decision 65).
+//! Their values are nanoseconds, as those of TIME. This file alone knows which of their types can be added or subtracted;
+//! from `lower` on they are durations (decision 65).
 
 use g7_model::{BinaryOp as Sign, Moment, Nanos, Problem, Span, Type, codes, say};
 

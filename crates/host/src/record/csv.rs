@@ -8,7 +8,7 @@ use super::{Kind, Recording, Value};
 
 /// Writes one row for each instant at which a signal changed, with the values of all signals.
 ///
-/// The first column is the time in seconds. BOOL is 0 or 1, TIME is in seconds, a date and a time of day are written out.
+/// The first column is the time in seconds. BOOL is 0 or 1, TIME is in seconds, a date or a time of day is text: `2026-11-28`.
 ///
 /// # Errors
 ///
@@ -34,7 +34,7 @@ pub fn write_csv(recording: &Recording, out: &mut dyn Write) -> io::Result<()> {
     Ok(())
 }
 
-/// A value as a cell: BOOL is 0 or 1, TIME is in seconds, a date and a time of day are written out.
+/// A value as a cell: BOOL is 0 or 1, TIME is in seconds, a date or a time of day is text: `2026-11-28`.
 pub fn csv_cell(value: &Value, kind: Kind) -> String {
     match kind {
         Kind::Bool => value.word().to_string(),

@@ -22,7 +22,7 @@ pub enum Kind {
     Lreal,
     /// A signed number of nanoseconds.
     Time,
-    /// A date, a time of day, or both: a signed number of nanoseconds.
+    /// A date, a time of day, or a date with a time: a signed number of nanoseconds.
     Moment(Moment),
     /// UTF-8 text.
     Text,
@@ -38,8 +38,8 @@ pub enum Value {
 }
 
 impl Kind {
-    /// The unit of a value that is a time, where it is a number elsewhere: the millisecond of a TIME, and that of
-    /// [`Moment::unit`].
+    /// The unit in which devices and files have this kind as a number: the millisecond for TIME, [`Moment::unit`] for dates
+    /// and times of day. None for other kinds.
     pub const fn unit(self) -> Option<Nanos> {
         match self {
             Kind::Time => Some(Nanos::MILLISECOND),

@@ -27,10 +27,8 @@ pub struct Composition<'d> {
     pub(super) charts: HashMap<&'d str, Scope<'d>>,
     /// The charts of each function block that has some.
     pub(super) owned: HashMap<&'d str, Vec<&'d Chart>>,
-    /// The types whose variables have charts, in themselves or in their members.
+    /// The types with charts: function blocks that have some, and types with a member of such a type.
     pub(super) holders: HashSet<&'d str>,
-    /// True if a chart of a function block has variables of such types.
-    pub(super) nested: bool,
     /// The places of the elements of charts on the drawing.
     pub(super) layouts: HashMap<&'d str, Vec<&'d Layout>>,
     /// The transition sections of the file.
@@ -65,6 +63,8 @@ pub(super) struct Segment {
 pub(super) struct Spot<'d> {
     /// The chart that the path names before it.
     pub(super) chart: Option<Name>,
+    /// The chart that declares the variable; None for one of the file.
+    pub(super) home: Option<Box<str>>,
     /// The name so far, with `[]` for indexes.
     pub(super) text: String,
     /// These indexes.
@@ -103,7 +103,6 @@ impl<'d> Composition<'d> {
             charts: HashMap::new(),
             owned: HashMap::new(),
             holders: HashSet::new(),
-            nested: false,
             layouts: HashMap::new(),
             sections: HashSet::new(),
             wrong: HashSet::new(),
@@ -257,14 +256,6 @@ impl<'e, 'd> Env<'e, 'd> {
             Env::Outer { chart, .. } => *chart,
             Env::Chart { full, .. } => Some(&full.text),
             Env::Block { outer, .. } => outer.home(),
-        }
-    }
-
-    /// The names where an instance is declared, as far as a name of its own tells.
-    pub(super) fn around(&self) -> &Env<'e, 'd> {
-        match self {
-            Env::Block { outer, .. } => outer,
-            env => env,
         }
     }
 

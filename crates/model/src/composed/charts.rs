@@ -12,12 +12,12 @@ use std::collections::HashSet;
 
 use super::base::{Composition, Env, Scope, Segment, Spot};
 use super::declare::bounds;
-use super::paths::{Lost, member};
+use super::paths::{Lost, at_of, member};
 use super::types::defined_twice;
 use crate::visit_mut::{self, Visitor};
 use crate::{
-    Chart, Composed, Document, Expr, ExprKind, Index, Item, Layout, Literal, Name, Path, Problem, VarDecl,
-    codes, instance_of, say,
+    Chart, Composed, Document, Expr, ExprKind, Index, Item, Layout, Literal, Name, Problem, VarDecl, codes,
+    instance_of, say,
 };
 
 impl<'d> Composition<'d> {
@@ -38,9 +38,8 @@ impl<'d> Composition<'d> {
                 self.problems.push(Problem::new(&codes::EXPECTED, c.name.at.0, what).help(help));
             }
         }
-        let types = std::mem::take(&mut self.types);
+        let types = &self.types;
         self.owned.retain(|name, _| types.get(name).is_some_and(|t| t.block));
-        self.types = types;
         self.holders();
     }
 
@@ -67,7 +66,7 @@ impl<'d> Composition<'d> {
         self.problems.extend(twice.map(|(name, first)| defined_twice(name, first)));
     }
 
-    /// Finds the types whose variables have charts, in themselves or in their members.
+    /// Finds the types with charts: the function blocks that have some, and the types with a member of such a type.
     fn holders(&mut self) {
         if self.owned.is_empty() {
             return;
@@ -86,23 +85,19 @@ impl<'d> Composition<'d> {
             }
             holders.extend(new);
         }
-        // A variable of a chart of a block is a variable of each instance.
-        let of_charts = |charts: &Vec<&'d Chart>| charts.iter().any(|c| c.vars().any(|v| v.of.is_some()));
-        self.nested = self.owned.values().any(of_charts);
         self.holders = holders;
     }
 
     /// True for a chart of a function block, which runs as the charts of its instances.
-    pub(super) fn is_of_block(&self, chart: &Name) -> bool {
-        self.owned.values().flatten().any(|c| c.name.text == chart.text)
+    pub(super) fn is_of_block(&self, chart: &str) -> bool {
+        self.owned.values().flatten().any(|c| *c.name.text == *chart)
     }
 
     /// The variables of a chart; those of `left.Cycle` are declared in `Cycle`.
     pub(super) fn scope(&self, chart: &str) -> Option<&Scope<'d>> {
         let of_block = || {
             let (_, own) = chart.rsplit_once('.')?;
-            let owned = self.owned.values().flatten().any(|c| *c.name.text == *own);
-            self.charts.get(own).filter(|_| owned)
+            self.charts.get(own).filter(|_| self.is_of_block(own))
         };
         self.charts.get(chart).or_else(of_block)
     }
@@ -113,7 +108,7 @@ impl<'d> Composition<'d> {
         if v.of.as_ref().is_some_and(|of| self.holders.contains(&*of.text)) {
             for name in &v.names {
                 let segment = Segment { name: name.clone(), index: Vec::new() };
-                let spot = self.start(&segment, v, chart.cloned());
+                let spot = self.start(&segment, v, chart.cloned(), chart.map(|c| &*c.text));
                 let dimensions = v.array.as_ref().map_or(Vec::new(), |a| a.dimensions.clone());
                 self.instances(spot, &dimensions, env, &mut found);
             }
@@ -153,12 +148,9 @@ impl<'d> Composition<'d> {
         if !self.takes(1 + chart.items.len(), instance.at) {
             return Vec::new();
         }
-        let Ok(home) = self.entered(instance.clone()).and_then(|spot| self.numbered(&spot)) else {
-            return Vec::new();
-        };
-        let prefix = instance.chart.as_ref().map_or(String::new(), |c| format!("{}.", c.text));
+        let Ok(name) = self.name_of_chart(instance.clone(), &chart.name.text) else { return Vec::new() };
         // The drawing of all instances is the one chart: problems and references lead there.
-        let name = Name::new(format!("{prefix}{home}.{}", chart.name.text), chart.name.at.0);
+        let name = Name::new(name, chart.name.at.0);
         let env = Env::Chart {
             instance: instance.clone(),
             chart: &chart.name.text,
@@ -173,97 +165,55 @@ impl<'d> Composition<'d> {
             Item::Layout(Layout { chart, ..(*l).clone() })
         });
         let mut items: Vec<Item> = layouts.chain([Item::Chart(made)]).collect();
-        if self.nested {
-            for v in chart.vars() {
-                items.extend(self.charts_of(v, Some(&name), &env));
-            }
+        for v in chart.vars() {
+            items.extend(self.charts_of(v, Some(&name), &env));
         }
         items
+    }
+
+    /// The name of a chart of an instance: `cell.gripper[2].Cycle`.
+    fn name_of_chart(&mut self, instance: Spot<'d>, chart: &str) -> Result<String, Lost> {
+        let prefix = instance.home.as_ref().map_or(String::new(), |home| format!("{home}."));
+        let spot = self.entered(instance)?;
+        Ok(format!("{prefix}{}.{chart}", self.numbered(&spot)?))
     }
 
     /// Puts the full name of a chart of an instance in the place of the path that leads to it: `left.Cycle`, or
     /// `Cycle` in the block itself. False if the path leads to none.
     pub(super) fn charted(&mut self, segments: &mut Vec<Segment>, env: &Env<'_, 'd>) -> Result<bool, Lost> {
-        let Some(count) = self.chart_at(segments, env) else { return Ok(false) };
-        let Some(own) = count.checked_sub(1).and_then(|k| segments.get(k)).map(|s| s.name.clone()) else {
-            return Ok(false);
-        };
-        let (spot, env) = match segments.get(..count - 1).unwrap_or_default() {
-            [] => (env.instance().cloned(), env.around()),
-            home => (self.spot(home, env)?, env),
-        };
-        let has = |of: &&Composed| self.charts_named(of, &own.text);
-        let Some(spot) = spot.filter(|s| s.of.as_ref().is_some_and(has)) else { return Ok(false) };
-        let prefix = match &spot.chart {
-            Some(chart) => format!("{}.", chart.text),
-            None => self.declaring(&spot.text, env).map_or(String::new(), |c| format!("{c}.")),
-        };
-        let entered = self.entered(spot)?;
-        let text = format!("{prefix}{}.{}", self.numbered(&entered)?, own.text);
-        let at = entered.at.to(own.at.0);
-        segments.splice(..count, [Segment { name: Name::new(text, at), index: Vec::new() }]);
-        Ok(true)
+        for count in self.chart_at(segments, env) {
+            let (home, chart) = match segments.get(..count).and_then(<[Segment]>::split_last) {
+                Some((chart, home)) => (home, chart.name.clone()),
+                None => continue,
+            };
+            let at = at_of(home);
+            let spot = if home.is_empty() { env.instance().cloned() } else { self.spot(home, env)? };
+            let has = |of: &Composed| self.charts_named(of, &chart.text);
+            let Some(spot) = spot.filter(|s| s.of.is_some_and(has)) else { continue };
+            let at = if home.is_empty() { chart.at.0 } else { at.to(chart.at.0) };
+            let name = Name::new(self.name_of_chart(spot, &chart.text)?, at);
+            segments.splice(..count, [Segment { name, index: Vec::new() }]);
+            return Ok(true);
+        }
+        Ok(false)
     }
 
-    /// How many segments of a path lead to a chart of an instance, as far as its names tell.
-    fn chart_at(&self, segments: &[Segment], env: &Env<'_, 'd>) -> Option<usize> {
-        if self.owned.is_empty() {
-            return None;
-        }
-        let first = segments.first()?;
+    /// How many segments of a path can lead to a chart of an instance, as far as its names tell.
+    fn chart_at(&self, segments: &[Segment], env: &Env<'_, 'd>) -> Vec<usize> {
+        let Some(first) = segments.first().filter(|_| !self.owned.is_empty()) else { return Vec::new() };
         let own = env.instance().and_then(|i| i.of).is_some_and(|of| self.charts_named(of, &first.name.text));
-        if own && first.index.is_empty() {
-            return Some(1);
+        if own && first.index.is_empty() && self.base(&first.name.text, env).is_none() {
+            return vec![1];
         }
-        let known = self.is_variable(&first.name.text, env);
-        let is_chart = |s: &Segment| {
-            s.index.is_empty() && self.owned.values().flatten().any(|c| c.name.text == s.name.text)
-        };
-        let place = segments.iter().skip(1).position(is_chart).filter(|_| known)?;
-        Some(place + 2)
+        if !self.is_variable(&first.name.text, env) {
+            return Vec::new();
+        }
+        let is_chart = |s: &Segment| s.index.is_empty() && self.is_of_block(&s.name.text);
+        (2..=segments.len()).filter(|k| segments.get(k - 1).is_some_and(is_chart)).collect()
     }
 
     fn charts_named(&self, of: &Composed, name: &str) -> bool {
         self.owned.get(&*of.name.text).into_iter().flatten().any(|c| *c.name.text == *name)
-    }
-
-    /// The chart in hand, if it declares the variable with which a name begins.
-    fn declaring<'e>(&self, text: &str, env: &'e Env<'_, 'd>) -> Option<&'e str> {
-        let first = text.split(['.', '[']).next().unwrap_or_default();
-        let (chart, locals) = env.root();
-        let own = self.scope(chart?)?.contains_key(first) && !locals.iter().any(|l| **l == *first);
-        env.home().filter(|_| own)
-    }
-
-    /// The path to a step of a chart of an instance, or to the chart; None for other paths.
-    pub(super) fn step_path(&mut self, e: &Expr, env: &Env<'_, 'd>) -> Result<Option<ExprKind>, Lost> {
-        if self.owned.is_empty() {
-            return Ok(None);
-        }
-        let (path, index) = match &e.kind {
-            ExprKind::Path(path) => (path, &[][..]),
-            ExprKind::Element(path, index, None) => (&**path, index.as_slice()),
-            _ => return Ok(None),
-        };
-        let mut segments = self.segments(path, index, env);
-        self.indexed(&mut segments, env);
-        if !self.charted(&mut segments, env)? {
-            return Ok(None);
-        }
-        let of_chart = |chart: &Segment, name: &Segment| {
-            self.scope(&chart.name.text).is_some_and(|scope| scope.contains_key(&*name.name.text))
-        };
-        if let [chart, second, ..] = segments.as_slice()
-            && of_chart(chart, second)
-        {
-            return Ok(None);
-        }
-        let index: Vec<Expr> = segments.iter().flat_map(|s| s.index.iter().cloned()).collect();
-        let path = Path { names: segments.into_iter().map(|s| s.name).collect() };
-        Ok(Some(match index.is_empty() {
-            true => ExprKind::Path(path),
-            false => ExprKind::Element(Box::new(path), index, None),
-        }))
     }
 
     /// Puts full names into the orders of a chart, and into its macro-steps.
@@ -273,7 +223,8 @@ impl<'d> Composition<'d> {
         }
     }
 
-    /// The full name of a chart that an order names, if it is one of an instance.
+    /// The full name of the chart that an order names: `Main.left.Cycle` for `left.Cycle` in `Main`. None if it is no chart
+    /// of an instance.
     fn full_name(&mut self, name: &Name, env: &Env<'_, 'd>) -> Option<Name> {
         let mut segments: Vec<Segment> = name.text.split('.').map(|part| segment(part, name)).collect();
         let charted = self.charted(&mut segments, env).unwrap_or_default();

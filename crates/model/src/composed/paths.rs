@@ -1,6 +1,6 @@
 //! The meaning of a path: `m[i].t[j].x` as the one name `m[].t[].x` with its indexes.
 
-use super::base::{Composition, Env, Segment, Spot, is_local};
+use super::base::{Composition, Env, Scope, Segment, Spot, is_local};
 use crate::{
     BinaryOp, Composed, Expr, ExprKind, Index, Literal, Name, Path, Place, Problem, Span, UnaryOp, VarDecl,
     VarKind, codes, instance_of, say, slot_of,
@@ -8,6 +8,16 @@ use crate::{
 
 /// A path that leads to no variable. Its problem has been reported.
 pub(super) struct Lost;
+
+/// The meaning of a path.
+enum Meaning<'d> {
+    /// A variable, or a part of one.
+    Variable(Box<Spot<'d>>),
+    /// A chart of an instance, or a step of it: the path with the full name of the chart.
+    OfChart(ExprKind),
+    /// Something in which nothing is replaced.
+    Other,
+}
 
 impl<'d> Composition<'d> {
     /// The names of a path, each with its indexes as they are written.
@@ -54,13 +64,17 @@ impl<'d> Composition<'d> {
     }
 
     /// The variable that a name alone means, outside of function blocks.
-    fn base(&self, name: &str, env: &Env<'_, 'd>) -> Option<&'d VarDecl> {
-        let (chart, locals) = env.root();
-        if locals.iter().any(|l| **l == *name) {
+    pub(super) fn base(&self, name: &str, env: &Env<'_, 'd>) -> Option<&'d VarDecl> {
+        if env.root().1.iter().any(|l| **l == *name) {
             return None;
         }
-        let own = chart.and_then(|c| self.scope(c)?.get(name));
+        let own = self.own_scope(env).and_then(|scope| scope.get(name));
         own.or_else(|| self.file.get(name)).copied()
+    }
+
+    /// The variables of the chart in hand.
+    fn own_scope(&self, env: &Env<'_, 'd>) -> Option<&Scope<'d>> {
+        self.scope(env.root().0?)
     }
 
     /// The variable that a path leads to; None if it leads to none, or to one in which nothing is replaced.
@@ -77,11 +91,14 @@ impl<'d> Composition<'d> {
                 if let (Some(scope), [second, rest @ ..]) = (self.scope(&first.name.text), rest)
                     && let Some(decl) = scope.get(&*second.name.text).copied()
                 {
-                    let spot = self.start(second, decl, Some(first.name.clone()));
+                    let chart = first.name.clone();
+                    let spot = self.start(second, decl, Some(chart), Some(&first.name.text));
                     return self.follow(spot, rest).map(Some);
                 }
                 let Some(decl) = self.base(&first.name.text, env) else { return Ok(None) };
-                self.follow(self.start(first, decl, None), rest).map(Some)
+                let own = self.own_scope(env).is_some_and(|scope| scope.contains_key(&*first.name.text));
+                let home = env.home().filter(|_| own);
+                self.follow(self.start(first, decl, None, home), rest).map(Some)
             }
             Env::Block { instance, inouts, outer } => {
                 if let Some(alias) = inouts.get(&*first.name.text) {
@@ -140,8 +157,16 @@ impl<'d> Composition<'d> {
         Lost
     }
 
-    pub(super) fn start(&self, segment: &Segment, decl: &'d VarDecl, chart: Option<Name>) -> Spot<'d> {
+    /// A variable: `chart` is the chart that the path names, `home` the one that declares the variable.
+    pub(super) fn start(
+        &self,
+        segment: &Segment,
+        decl: &'d VarDecl,
+        chart: Option<Name>,
+        home: Option<&str>,
+    ) -> Spot<'d> {
         Spot {
+            home: home.map(Box::from),
             at: chart.as_ref().map_or(segment.name.at.0, |c| c.at.0.to(segment.name.at.0)),
             chart,
             text: segment.name.text.to_string(),
@@ -271,15 +296,11 @@ impl<'d> Composition<'d> {
 
     /// Replaces a path and the names in its indexes.
     fn replace(&mut self, e: &mut Expr, env: &Env<'_, 'd>, written: bool) {
-        match self.step_path(e, env) {
-            Ok(None) => {}
-            Ok(Some(kind)) => return e.kind = kind,
-            Err(Lost) => return e.kind = ExprKind::Bad,
-        }
-        let kind = match self.spot_of(e, env) {
-            Ok(Some(spot)) => self.plain(spot, written),
+        let kind = match self.meaning(e, env) {
+            Ok(Meaning::Variable(spot)) => self.plain(*spot, written),
+            Ok(Meaning::OfChart(kind)) => Some(kind),
             Err(Lost) => None,
-            Ok(None) => {
+            Ok(Meaning::Other) => {
                 if let ExprKind::Element(_, index, _) = &mut e.kind {
                     index.iter_mut().for_each(|i| self.expr(i, env));
                 }
@@ -291,21 +312,32 @@ impl<'d> Composition<'d> {
 
     /// The variable that a path or an element leads to, with the names in its indexes replaced.
     pub(super) fn spot_of(&mut self, e: &Expr, env: &Env<'_, 'd>) -> Result<Option<Spot<'d>>, Lost> {
+        match self.meaning(e, env)? {
+            Meaning::Variable(spot) => Ok(Some(*spot)),
+            Meaning::OfChart(_) | Meaning::Other => Ok(None),
+        }
+    }
+
+    /// The meaning of a path or an element.
+    fn meaning(&mut self, e: &Expr, env: &Env<'_, 'd>) -> Result<Meaning<'d>, Lost> {
         let (path, index, bit) = match &e.kind {
             ExprKind::Path(path) => (path, &[][..], None),
             ExprKind::Element(path, index, bit) => (&**path, index.as_slice(), bit.as_ref()),
-            _ => return Ok(None),
+            _ => return Ok(Meaning::Other),
         };
         let mut segments = self.segments(path, index, env);
         self.indexed(&mut segments, env);
-        let spot = match self.charted(&mut segments, env)? {
+        let charted = self.charted(&mut segments, env)?;
+        let spot = match charted {
             true => self.spot(&segments, &Env::outside()),
             false => self.spot(&segments, env),
         }?;
-        Ok(spot.map(|mut spot| {
-            spot.tail.extend(bit.map(|b| (**b).clone()));
-            spot
-        }))
+        let bit = bit.map(|b| (**b).clone());
+        let Some(mut spot) = spot else {
+            return Ok(if charted { Meaning::OfChart(of_chart(segments, bit)) } else { Meaning::Other });
+        };
+        spot.tail.extend(bit);
+        Ok(Meaning::Variable(Box::new(spot)))
     }
 
     /// The expression for a variable of an elementary type or an array of such.
@@ -395,6 +427,16 @@ fn number_of(index: Index<'_>, at: Place) -> Expr {
                 },
             }
         }
+    }
+}
+
+/// A path to a step of a chart. An index or a bit, which a step does not have, is told later.
+fn of_chart(segments: Vec<Segment>, bit: Option<Name>) -> ExprKind {
+    let index: Vec<Expr> = segments.iter().flat_map(|s| s.index.iter().cloned()).collect();
+    let path = Path { names: segments.into_iter().map(|s| s.name).chain(bit).collect() };
+    match index.is_empty() {
+        true => ExprKind::Path(path),
+        false => ExprKind::Element(Box::new(path), index, None),
     }
 }
 

@@ -27,7 +27,7 @@ impl<'d> Composition<'d> {
                 items.extend(self.charts_of(v, None, &outside));
             }
             Item::Chart(c) if c.block.is_some() => {}
-            Item::Layout(l) if self.is_of_block(&l.chart) => {}
+            Item::Layout(l) if self.is_of_block(&l.chart.text) => {}
             Item::Chart(c) => {
                 let env = Env::of(Some(&c.name.text));
                 items.push(Item::Chart(self.chart(c, &c.name, &env)));
