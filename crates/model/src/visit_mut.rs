@@ -181,6 +181,22 @@ fn stmt(s: &mut Stmt, v: &mut impl Visitor) {
     v.stmt(s);
 }
 
+/// The lists of statements within a statement, one level down.
+pub fn lists(s: &mut Stmt, mut f: impl FnMut(&mut Vec<Stmt>)) {
+    match &mut s.kind {
+        StmtKind::If(arms, otherwise) => {
+            arms.iter_mut().for_each(|(_, body)| f(body));
+            f(otherwise);
+        }
+        StmtKind::Case(_, arms, otherwise) => {
+            arms.iter_mut().for_each(|a| f(&mut a.body));
+            f(otherwise);
+        }
+        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => f(body),
+        StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit | StmtKind::Return => {}
+    }
+}
+
 /// Visits a variable, or an element of an array, that gets a value.
 fn written(target: &mut Expr, at: Span, v: &mut impl Visitor) {
     match &mut target.kind {

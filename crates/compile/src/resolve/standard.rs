@@ -12,7 +12,7 @@ use g7_model::{
 use super::constant;
 use super::operator;
 use super::resolver::Resolver;
-use super::types::{Typed, common};
+use super::types::{Typed, common, converted};
 use crate::ir::{Expr, ExprKind, Value};
 
 /// Most parts of a value that a comparison of three and more takes twice.
@@ -162,8 +162,14 @@ impl Resolver<'_, '_> {
                 Some(Typed::of(ExprKind::Builtin(function, values), Type::Int, at))
             }
             Shape::Number | Shape::Real | Shape::Ordered | Shape::Limit => {
-                let (values, _) = self.meet(row, shape, given, None, hint, at)?;
-                Some(nested(function, values, at))
+                let (values, ty) = self.meet(row, shape, given, None, hint, at)?;
+                // Bit strings are in the order of the numbers that stand for them (2.5.1.5.4, ANY_BIT).
+                let Some(number) = ty.unsigned().filter(|_| ty.is_bits()) else {
+                    return Some(nested(function, values, at));
+                };
+                let numbers = values.into_iter().map(|e| converted(e, number)).collect();
+                let least = nested(function, numbers, at).expr;
+                Some(Typed { expr: converted(least, ty), literal: false })
             }
             Shape::Select | Shape::Multiplex => {
                 let selector = if shape == Shape::Select { Type::Bool } else { Type::Lint };
@@ -352,7 +358,7 @@ fn shared(typed: &[Typed], shape: Shape, hint: Option<Type>) -> Option<Type> {
         Shape::Number => measured,
         Shape::Real if ty.is_integer() => return common(ty, Type::Real),
         Shape::Real => ty.is_real(),
-        Shape::Ordered | Shape::Limit => measured || ty.is_moment(),
+        Shape::Ordered | Shape::Limit => measured || ty.is_moment() || ty.is_bits(),
         _ => !matches!(ty, Type::Fb(_)),
     };
     fits.then_some(ty)

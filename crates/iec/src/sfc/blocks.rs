@@ -60,6 +60,7 @@ fn used(source: &Source) -> HashSet<String> {
 fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mut Report) -> Composed {
     let known = |name: &Name| used.contains(&name.text.to_uppercase());
     lost_actions(&unit, report);
+    foreign(&unit, report);
     let (mut members, mut inouts, mut locals) = (Vec::new(), Vec::new(), Vec::new());
     for Variable { section, mut decl, unknown } in unit.vars {
         if let Some(of) = unknown.filter(|of| !known(of)) {
@@ -126,6 +127,14 @@ pub(super) fn no_type(source: &Source, ty: &Name) -> Said {
         ),
         Some(_) => say!("an instance of `{}`, which is no function block", ty.text),
         None => say!("there is no type `{}`", ty.text),
+    }
+}
+
+/// Reports statements of another language in a unit that is carried over.
+pub(super) fn foreign(unit: &Unit, report: &mut Report) {
+    if let Some(at) = unit.foreign {
+        let what = say!("`{}` has statements in a pragma, in C or another language; they are not read", unit.name.text);
+        report.put(Problem::new(&codes::NOT_CARRIED, at, what));
     }
 }
 

@@ -9,7 +9,7 @@ use g7_model::{
     Step, StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
 };
 
-use super::blocks::{lost_actions, no_type};
+use super::blocks::{foreign, lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
 use crate::report::Report;
 use crate::st::{Section, Variable, settle};
@@ -28,12 +28,17 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
     let mut builder = Builder { source: &source, paces, globals: HashSet::new(), report };
     items.extend(builder.globals());
     let alone = source.units.iter().filter(|u| u.kind != UnitKind::Function && builder.runs(u)).count() == 1;
+    if !source.before.is_empty() {
+        let block = Block { locals: Vec::new(), statements: source.before.clone(), at: at.into() };
+        items.push(Item::Pre(Body::St(block), at.into()));
+    }
     let mut charts = Vec::new();
     let (mut before, mut behind) = (Vec::new(), Vec::new());
     for (number, unit) in source.units.iter().enumerate() {
         if !alone && builder.is_code(unit) {
             items.extend(builder.variables(unit).into_iter().map(Item::Var));
             lost_actions(unit, builder.report);
+            foreign(unit, builder.report);
             let list = if builder.is_late(number) { &mut behind } else { &mut before };
             list.push((unit, &unit.body));
             if !unit.behind.is_empty() {
@@ -202,6 +207,7 @@ impl Builder<'_> {
             self.report.put(Problem::new(&codes::LEFT_OUT, unit.name.at.0, what));
             return (Vec::new(), None);
         }
+        foreign(unit, self.report);
         let vars = self.variables(unit);
         let block = Block { locals: Vec::new(), statements: unit.body.clone(), at: unit.at.into() };
         if unit.is_chart() && !unit.body.is_empty() {
@@ -350,7 +356,8 @@ impl Builder<'_> {
     }
 
     fn function(&mut self, unit: &Unit) -> Option<Function> {
-        let result = unit.result?;
+        let result = unit.result.as_ref()?.decl.ty;
+        foreign(unit, self.report);
         let mut params = Vec::new();
         let mut locals = Vec::new();
         for variable in &unit.vars {
@@ -358,18 +365,9 @@ impl Builder<'_> {
                 continue;
             }
             let decl = &variable.decl;
-            if decl.array.is_some() || decl.of.is_some() {
-                let what = say!("an array, a structure or a function block in a function");
-                self.report.put(Problem::new(&codes::NOT_CARRIED, decl.at.0, what));
-                continue;
-            }
             match variable.section {
                 Section::Input => {
                     params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));
-                }
-                Section::Output | Section::InOut => {
-                    let what = say!("a function gives one result and changes none of its inputs");
-                    self.report.put(Problem::new(&codes::NOT_CARRIED, decl.at.0, what));
                 }
                 _ => locals.push(Local {
                     names: decl.names.clone(),

@@ -10,47 +10,50 @@
 use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Visitor};
-use g7_model::{Arg, Expr, Path, Stmt, StmtKind, VarDecl};
+use g7_model::{Arg, Expr, ExprKind, Name, Path, Problem, Stmt, StmtKind, VarDecl, codes, say};
 
 use super::unit::{Part, Source};
 use crate::nodes;
+use crate::report::Report;
 
 /// The types of variables that are of a type of the file; all names in upper case.
-type Types = HashMap<String, String>;
+pub(super) type Types = HashMap<String, String>;
 
 /// Rewrites the calls of all units.
-pub(super) fn expand(source: &mut Source) {
+pub(super) fn expand(source: &mut Source, report: &mut Report) {
     let file = File::of(source);
     let globals = types(source.globals.iter().map(|v| &v.decl));
     for unit in &mut source.units {
         let mut variables = globals.clone();
         variables.extend(types(unit.vars.iter().map(|v| &v.decl)));
-        let mut enabled = Enabled { file: &file, variables };
+        let mut enabled = Enabled { file: &file, variables, report };
         visit_mut::stmts(&mut unit.body, &mut enabled);
         for part in &mut unit.parts {
-            if let Part::Action { body, .. } = part {
-                visit_mut::stmts(body, &mut enabled);
+            match part {
+                Part::Action { body, .. } => visit_mut::stmts(body, &mut enabled),
+                Part::Transition(t) => visit_mut::expr(&mut t.receptivity, &mut enabled),
+                Part::Step { .. } => {}
             }
         }
     }
 }
 
-fn types<'v>(variables: impl Iterator<Item = &'v VarDecl>) -> Types {
+pub(super) fn types<'v>(variables: impl Iterator<Item = &'v VarDecl>) -> Types {
     let of =
         |v: &'v VarDecl| Some((v.names.first()?.text.to_uppercase(), v.of.as_ref()?.text.to_uppercase()));
     variables.filter_map(of).collect()
 }
 
 /// The function blocks and structures of a file.
-struct File {
+pub(super) struct File {
     /// The types of their members, by the name of the function block or structure.
     members: HashMap<String, Types>,
-    /// The function blocks that declare `EN`.
+    /// The function blocks and functions that declare `EN`.
     own: HashSet<String>,
 }
 
 impl File {
-    fn of(source: &Source) -> File {
+    pub(super) fn of(source: &Source) -> File {
         let declares = |v: &VarDecl| v.names.iter().any(|n| n.text.eq_ignore_ascii_case("EN"));
         let mut file = File { members: HashMap::new(), own: HashSet::new() };
         for unit in &source.units {
@@ -65,20 +68,25 @@ impl File {
         }
         file
     }
+
+    /// The type of what names say, if it is one of the file.
+    pub(super) fn type_of<'t>(&'t self, names: &[Name], variables: &'t Types) -> Option<&'t String> {
+        let mut names = names.iter().map(|n| n.text.split('[').next().unwrap_or("").to_uppercase());
+        let first = names.next().and_then(|n| variables.get(&n));
+        names.fold(first, |of, member| self.members.get(of?)?.get(&member))
+    }
 }
 
 struct Enabled<'f> {
     file: &'f File,
     variables: Types,
+    report: &'f mut Report,
 }
 
 impl Enabled<'_> {
     /// True if the function block that a path names declares `EN`.
     fn declares(&self, path: &Path) -> bool {
-        let mut names = path.names.iter().map(|n| n.text.split('[').next().unwrap_or("").to_uppercase());
-        let first = names.next().and_then(|n| self.variables.get(&n));
-        let of = names.fold(first, |of, member| self.file.members.get(of?)?.get(&member));
-        of.is_some_and(|of| self.file.own.contains(of))
+        self.file.type_of(&path.names, &self.variables).is_some_and(|of| self.file.own.contains(of))
     }
 }
 
@@ -104,5 +112,18 @@ impl Visitor for Enabled<'_> {
         let not: Vec<Stmt> = tell(false);
         let run = std::iter::once(stmt.clone()).chain(tell(true)).collect();
         *stmt = nodes::when(en.unwrap_or_else(|| nodes::boolean(true, at)), run, not, at);
+    }
+    /// The call of a function in an expression always runs.
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Call(path, args) = &mut e.kind else { return };
+        if path.names.first().is_some_and(|n| self.file.own.contains(&n.text.to_uppercase())) {
+            return;
+        }
+        let (en, eno) = (taken(args, "EN", false), taken(args, "ENO", true));
+        let other = en.filter(|e| nodes::truth(e) != Some(true)).or(eno);
+        if let Some(other) = other {
+            let what = say!("`EN` of a function in an expression is TRUE, and `ENO` is not read; write an IF");
+            self.report.put(Problem::new(&codes::NOT_CARRIED, other.at.0, what));
+        }
     }
 }

@@ -3,11 +3,13 @@
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> st (lexer, parser) -> read (units) -> instances, blocks -> build (Document) -> st::settle
+//! bytes -> st (lexer, parser) -> read (units) -> enabled, functions, inouts, instances, blocks -> build (Document)
+//!                                                                                      -> st::settle
 //! Document -> write -> text
 //! ```
 //!
 //! - `read` turns the file into program organisation units and configurations.
+//! - `enabled` and `functions` rewrite calls with `EN`, and functions with more than one elementary result.
 //! - `instances` makes a unit of each instance of a block with a chart.
 //! - `blocks` replaces calls of the file's own function blocks by their bodies.
 //! - `build` makes a chart of each unit with steps, assigns globals, addresses and intervals of the
@@ -17,7 +19,10 @@
 
 mod blocks;
 mod build;
+mod called;
 mod enabled;
+mod functions;
+mod inouts;
 mod instances;
 mod read;
 mod singles;
@@ -89,7 +94,9 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
         report.say(&codes::NOT_JGRAFCHART, &(0..end), what);
         return (Document::default(), report.finish());
     }
-    enabled::expand(&mut source);
+    enabled::expand(&mut source, &mut report);
+    functions::expand(&mut source, &mut report);
+    inouts::expand(&mut source, &mut report);
     instances::expand(&mut source, &mut report);
     blocks::expand(&mut source, &mut report);
     let document = build::document(source, text.len(), &mut report);

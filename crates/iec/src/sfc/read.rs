@@ -4,7 +4,7 @@ use g7_model::codes;
 use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt, StmtKind, say};
 
 use super::unit::{Association, Instance, Part, Source, Task, Transition, Unit, UnitKind};
-use crate::st::{Kind, Parser, elementary};
+use crate::st::{Kind, Parser};
 use crate::words::closes;
 
 /// Reads the whole file.
@@ -56,6 +56,7 @@ fn item(p: &mut Parser, source: &mut Source) {
                 body: Vec::new(),
                 behind: Vec::new(),
                 body_at: 0..0,
+                foreign: None,
                 at: p.since(start),
             };
             while part(p, &mut unit) {}
@@ -79,7 +80,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         p.bump();
     }
     let Some(name) = p.name(say!("the name of the unit")) else { return };
-    let result = if kind == UnitKind::Function && p.eat(":") { result_type(p) } else { None };
+    let result = if kind == UnitKind::Function && p.eat(":") { p.result(&name, &mut source.types) } else { None };
     for word in ["EXTENDS", "IMPLEMENTS"] {
         if p.at_word(word) {
             let at = p.here();
@@ -97,6 +98,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         body: Vec::new(),
         behind: Vec::new(),
         body_at: 0..0,
+        foreign: None,
         at: p.since(start),
     };
     loop {
@@ -114,6 +116,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
             p.bump();
         }
     }
+    unit.foreign = p.foreign(start);
     if p.word() != closing && closes(&p.word()) && !p.at_end() {
         p.expected(say!("`{closing}`"));
         p.skip_to(&[closing, "PROGRAM", "FUNCTION_BLOCK", "FUNCTION", "CONFIGURATION"]);
@@ -124,21 +127,6 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
     p.eat(";");
     unit.at = p.since(start);
     source.units.push(unit);
-}
-
-fn result_type(p: &mut Parser) -> Option<g7_model::Type> {
-    let at = p.here();
-    let word = p.word();
-    let ty = elementary(&word);
-    p.name(say!("a type"));
-    if ty.is_none() {
-        p.say(&codes::NOT_CARRIED, &at, say!("the result of a function has an elementary type"));
-    }
-    if p.eat("(") || p.eat("[") {
-        p.bump();
-        p.bump();
-    }
-    ty
 }
 
 /// Statements of the unit itself.

@@ -18,6 +18,8 @@ pub(super) struct Source {
     pub(super) blocks: Vec<Composed>,
     /// The global variables that these use.
     pub(super) externals: Vec<Variable>,
+    /// Statements that run before all programs.
+    pub(super) before: Vec<Stmt>,
 }
 
 /// The kinds of program organisation unit.
@@ -33,8 +35,8 @@ pub(super) enum UnitKind {
 pub(super) struct Unit {
     pub(super) kind: UnitKind,
     pub(super) name: Name,
-    /// The type of a function's result.
-    pub(super) result: Option<g7_model::Type>,
+    /// The result of a function, with its name.
+    pub(super) result: Option<Variable>,
     pub(super) vars: Vec<Variable>,
     pub(super) parts: Vec<Part>,
     /// The statements of a unit without a chart.
@@ -42,6 +44,8 @@ pub(super) struct Unit {
     /// Statements behind the charts that the unit calls.
     pub(super) behind: Vec<Stmt>,
     pub(super) body_at: Range<usize>,
+    /// A pragma with statements of another language.
+    pub(super) foreign: Option<Span>,
     pub(super) at: Span,
 }
 

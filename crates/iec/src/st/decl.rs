@@ -97,6 +97,15 @@ impl Parser<'_> {
         true
     }
 
+    /// Reads the type behind the name of a function: the declaration of its result.
+    pub(crate) fn result(&mut self, function: &Name, types: &mut Types) -> Option<Variable> {
+        let start = self.token().start;
+        let shape = self.shape(function, types);
+        let (decl, _) = declared(function, &shape, None, self.since(start).into());
+        let unknown = if let Shape::Unknown(of) = element(&shape) { Some(of.clone()) } else { None };
+        Some(Variable { section: Section::Output, decl, unknown })
+    }
+
     /// Skips to the next `;` after a problem.
     fn next_declaration(&mut self) {
         while !self.at_end() && !self.at_word("END_VAR") && !self.at(";") {

@@ -1,11 +1,11 @@
 //! Expressions of Structured Text.
 
 use g7_model::codes;
-use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, Span, UnaryOp, say};
+use g7_model::{Arg, BinaryOp, Expr, ExprKind, Name, Path, Said, Span, Type, UnaryOp, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
-use crate::signs;
+use crate::{nodes, signs};
 
 /// The largest height of an expression's tree. Later stages recurse over it.
 const MOST_HIGH: u32 = 400;
@@ -253,9 +253,28 @@ impl Parser<'_> {
         let height = args.height.saturating_add(u32::try_from(args.list.len()).unwrap_or(u32::MAX));
         let kind = match signs::applied(upper, args.list, at) {
             Ok(operator) => operator.kind,
-            Err(list) => ExprKind::Call(Path { names: vec![name] }, list),
+            Err(list) => match by_number(upper) {
+                Some((first, then)) => {
+                    self.transfer(upper, at);
+                    let inner = nodes::expr(ExprKind::Call(nodes::path(&[&first], name.at.0), list), at);
+                    nodes::call(&then, vec![inner], at).kind
+                }
+                None => ExprKind::Call(Path { names: vec![name] }, list),
+            },
         };
         self.bounded(kind, at, height.max(args.height + 1))
+    }
+
+    /// Says what a conversion between bits and a real number of the same length does.
+    fn transfer(&mut self, upper: &str, at: Span) {
+        if matches!(upper, "DWORD_TO_REAL" | "REAL_TO_DWORD" | "LWORD_TO_LREAL" | "LREAL_TO_LWORD") {
+            let what = say!(
+                "`{}` converts the number, as CODESYS does; where it keeps the bits (IEC 61131-3:2013, table 23), the \
+                 value is another one",
+                Said::foreign(upper)
+            );
+            self.report.put(g7_model::Problem::new(&codes::DIFFERENT, at, what));
+        }
     }
 
     /// `(…)` behind a name.
@@ -306,6 +325,20 @@ impl Parser<'_> {
         let tree = self.tree(1);
         Some((Arg { name: Some(name), output, value: tree.expr }, tree.height))
     }
+}
+
+/// The two conversions that do what one of bits does, by way of the number that stands for them: `TIME_TO_DWORD` is
+/// `UDINT_TO_DWORD(TIME_TO_UDINT(…))` (IEC 61131-3:2003, 2.5.1.5.1).
+fn by_number(upper: &str) -> Option<(String, String)> {
+    let (from, to) = upper.split_once("_TO_")?;
+    let (a, b) = (Type::named(from)?, Type::named(to)?);
+    let other = |ty: Type| ty.is_real() || ty == Type::Time || ty.is_moment();
+    let number = match (a.unsigned(), b.unsigned()) {
+        (Some(number), None) if other(b) => number,
+        (None, Some(number)) if other(a) => number,
+        _ => return None,
+    };
+    Some((format!("{from}_TO_{number}"), format!("{number}_TO_{to}")))
 }
 
 /// The arguments of a call, with the height of the highest.

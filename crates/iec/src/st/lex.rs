@@ -1,6 +1,7 @@
 //! Splits the text into words, numbers and signs.
 //!
-//! Comments (`(* *)`, `//`, `/* */`) and pragmas (`{ }`) are skipped. Nothing is refused here: an
+//! Comments (`(* *)`, `//`, `/* */`) and pragmas (`{ }`) are skipped; a pragma with statements of another language
+//! (matiec: C) is kept for a report. Nothing is refused here: an
 //! unknown character becomes a sign that no rule accepts.
 
 use std::ops::Range;
@@ -34,9 +35,18 @@ pub(crate) struct Token {
     pub(crate) newline: bool,
 }
 
-/// The tokens of a text, ending with `End`, and the places of its comments.
-pub(crate) fn tokens(text: &str) -> (Vec<Token>, Vec<Range<usize>>) {
-    let mut lexer = Lexer { text, pos: 0, comments: Vec::new(), flat: false };
+/// A text in tokens.
+pub(crate) struct Lexed {
+    /// They end with `End`.
+    pub(crate) tokens: Vec<Token>,
+    pub(crate) comments: Vec<Range<usize>>,
+    /// The pragmas with statements of another language.
+    pub(crate) foreign: Vec<Range<usize>>,
+}
+
+/// Splits a text.
+pub(crate) fn tokens(text: &str) -> Lexed {
+    let mut lexer = Lexer { text, pos: 0, comments: Vec::new(), foreign: Vec::new(), flat: false };
     let mut tokens = Vec::new();
     loop {
         let newline = lexer.blanks();
@@ -44,7 +54,7 @@ pub(crate) fn tokens(text: &str) -> (Vec<Token>, Vec<Range<usize>>) {
         let kind = lexer.scan();
         tokens.push(Token { kind, start: offset(start), end: offset(lexer.pos), newline });
         if kind == Kind::End {
-            return (tokens, lexer.comments);
+            return Lexed { tokens, comments: lexer.comments, foreign: lexer.foreign };
         }
     }
 }
@@ -57,6 +67,7 @@ struct Lexer<'a> {
     text: &'a str,
     pos: usize,
     comments: Vec<Range<usize>>,
+    foreign: Vec<Range<usize>>,
     /// True if comments do not nest: with nesting, one would stay open at the end of the text.
     flat: bool,
 }
@@ -99,7 +110,12 @@ impl Lexer<'_> {
                 }
                 (b'{', _) => {
                     let rest = self.rest();
-                    self.pos += rest.find('}').map_or(rest.len(), |i| i + 1);
+                    // matiec: `{{ … }}` holds text with braces.
+                    let close = if rest.starts_with("{{") { "}}" } else { "}" };
+                    self.pos += rest.find(close).map_or(rest.len(), |i| i + close.len());
+                    if self.text.get(start..self.pos).is_some_and(|t| t.contains(';')) {
+                        self.foreign.push(start..self.pos);
+                    }
                 }
                 (0x80.., _) => match self.rest().chars().next() {
                     Some(c) if c.is_whitespace() || c == '\u{feff}' => self.pos += c.len_utf8(),

@@ -5,7 +5,7 @@ use std::ops::Range;
 use g7_model::codes::{self, Code};
 use g7_model::{Expr, ExprKind, Name, Said, Span, Stmt, say};
 
-use super::lex::{Kind, Token, tokens};
+use super::lex::{Kind, Lexed, Token, tokens};
 use crate::report::Report;
 
 /// The deepest nesting of brackets and statements.
@@ -19,6 +19,7 @@ pub(crate) struct Parser<'a> {
     pub(crate) text: &'a str,
     tokens: Vec<Token>,
     pub(crate) comments: Vec<Range<usize>>,
+    foreign: Vec<Range<usize>>,
     pos: usize,
     place: Places<'a>,
     pub(crate) report: &'a mut Report,
@@ -31,8 +32,8 @@ pub(crate) struct Parser<'a> {
 
 impl<'a> Parser<'a> {
     pub(crate) fn new(text: &'a str, place: Places<'a>, report: &'a mut Report) -> Parser<'a> {
-        let (tokens, comments) = tokens(text);
-        Parser { text, tokens, comments, pos: 0, place, report, nested: 0, single: false, told: None }
+        let Lexed { tokens, comments, foreign } = tokens(text);
+        Parser { text, tokens, comments, foreign, pos: 0, place, report, nested: 0, single: false, told: None }
     }
 
     /// A parser for a format whose elements of arrays become single variables.
@@ -134,6 +135,13 @@ impl<'a> Parser<'a> {
     pub(crate) fn word(&self) -> String {
         let token = self.token();
         if token.kind == Kind::Word { self.slice(token).to_ascii_uppercase() } else { String::new() }
+    }
+
+    /// The first pragma with statements of another language behind a place in the text.
+    pub(crate) fn foreign(&self, start: u32) -> Option<Span> {
+        let first = self.foreign.partition_point(|r| r.start < start as usize);
+        let place = self.foreign.get(first).filter(|r| r.end <= self.token().start as usize)?;
+        Some(self.report.span(&(self.place)(place.clone())))
     }
 
     // Places

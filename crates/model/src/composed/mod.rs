@@ -46,17 +46,25 @@ pub fn decomposed(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
 /// The document in which the local variables of the bodies of function blocks are variables of the blocks, which get
 /// their values anew at each call.
 fn without_locals(document: &Document) -> Cow<'_, Document> {
-    let local = |i: &Item| matches!(i, Item::Composed(Composed { body: Some(b), .. }) if !b.block().locals.is_empty());
+    let local = |i: &Item| match i {
+        Item::Composed(Composed { body: Some(b), .. }) => {
+            !b.block().locals.is_empty() || returns::in_loops(&b.block().statements)
+        }
+        _ => false,
+    };
     if !document.items.iter().any(local) {
         return Cow::Borrowed(document);
     }
     let mut own = document.clone();
     for item in &mut own.items {
-        let Item::Composed(Composed { members, body: Some(Body::St(block)), .. }) = item else { continue };
+        let Item::Composed(of) = item else { continue };
+        let Some(Body::St(mut block)) = of.body.take_if(|b| matches!(b, Body::St(_))) else { continue };
+        returns::out_of_loops(of, &mut block);
         let locals = std::mem::take(&mut block.locals);
-        members.extend(locals.iter().map(declare::local_member));
+        of.members.extend(locals.iter().map(declare::local_member));
         let values = locals.iter().flat_map(declare::local_values).collect::<Vec<_>>();
         block.statements.splice(0..0, values);
+        of.body = Some(Body::St(block));
     }
     Cow::Owned(own)
 }

@@ -1,6 +1,10 @@
 //! The body of a function block without RETURN: in a call it stands among the statements of the caller, which go on.
 
-use crate::{Expr, ExprKind, Problem, Span, Stmt, StmtKind, UnaryOp, codes, say};
+use crate::visit_mut::{self, Use, Visitor};
+use crate::{
+    Block, Composed, Expr, ExprKind, Literal, Local, Name, Path, Place, Problem, Span, Stmt, StmtKind, Type, UnaryOp,
+    codes, say,
+};
 
 /// The most statements that a body may have when the statements behind a RETURN are put aside.
 const MOST: usize = 1 << 14;
@@ -35,6 +39,97 @@ fn at_return(s: &Stmt) -> Option<Span> {
     }
 }
 
+/// Puts each RETURN out of the loops of a body: it sets a local variable and leaves the loop, and behind the loop that
+/// variable is asked.
+pub(super) fn out_of_loops(of: &Composed, block: &mut Block) {
+    if !in_loops(&block.statements) {
+        return;
+    }
+    let at = block.at;
+    let mut names = Names(of.members.iter().chain(&of.inouts).flat_map(|m| &m.names).cloned().collect());
+    names.0.extend(block.locals.iter().flat_map(|l| l.names.clone()));
+    visit_mut::stmts(&mut block.statements, &mut names);
+    let numbered = (2..).map(|n| format!("returned_{n}"));
+    let free = |n: &String| !names.0.iter().any(|given| *given.text == **n);
+    let Some(flag) = std::iter::once("returned".to_owned()).chain(numbered).find(free) else { return };
+    let flag = Name { text: flag.into(), at };
+    block.locals.push(Local { names: vec![flag.clone()], ty: Type::Bool, init: None, at });
+    outside(&mut block.statements, &flag);
+}
+
+/// True if a RETURN stands in a loop of a list.
+pub(super) fn in_loops(list: &[Stmt]) -> bool {
+    list.iter().any(in_loop)
+}
+
+fn in_loop(s: &Stmt) -> bool {
+    match &s.kind {
+        _ if is_loop(s) => returns(s),
+        StmtKind::If(arms, otherwise) => arms.iter().flat_map(|a| &a.1).chain(otherwise).any(in_loop),
+        StmtKind::Case(_, arms, otherwise) => arms.iter().flat_map(|a| &a.body).chain(otherwise).any(in_loop),
+        _ => false,
+    }
+}
+
+/// True for a loop.
+fn is_loop(s: &Stmt) -> bool {
+    matches!(s.kind, StmtKind::For { .. } | StmtKind::While(..) | StmtKind::Repeat(..))
+}
+
+/// Rewrites the loops of a list that stands in none.
+fn outside(list: &mut Vec<Stmt>, flag: &Name) {
+    for mut s in std::mem::take(list) {
+        let mut asked = false;
+        if is_loop(&s) {
+            visit_mut::lists(&mut s, |body| asked = inside(body, flag));
+        } else {
+            visit_mut::lists(&mut s, |body| outside(body, flag));
+        }
+        let at = s.at;
+        list.push(s);
+        if asked {
+            list.push(ask(flag, StmtKind::Return, at));
+        }
+    }
+}
+
+/// Rewrites the body of a loop. Returns true if it had a RETURN.
+fn inside(list: &mut Vec<Stmt>, flag: &Name) -> bool {
+    let mut any = false;
+    for mut s in std::mem::take(list) {
+        let (at, inner) = (s.at, is_loop(&s));
+        let mut had = false;
+        visit_mut::lists(&mut s, |body| had |= inside(body, flag));
+        if s.kind == StmtKind::Return {
+            let target = Expr { kind: ExprKind::Path(Path { names: vec![flag.clone()] }), at };
+            let value = Expr { kind: ExprKind::Literal(Literal::Bool(true)), at };
+            list.push(Stmt { kind: StmtKind::Assign { target, value }, at });
+            (s.kind, any) = (StmtKind::Exit, true);
+        }
+        list.push(s);
+        if had && inner {
+            list.push(ask(flag, StmtKind::Exit, at));
+        }
+        any |= had;
+    }
+    any
+}
+
+/// `IF returned THEN … END_IF`.
+fn ask(flag: &Name, then: StmtKind, at: Place) -> Stmt {
+    let condition = Expr { kind: ExprKind::Path(Path { names: vec![flag.clone()] }), at };
+    Stmt { kind: StmtKind::If(vec![(condition, vec![Stmt { kind: then, at }])], Vec::new()), at }
+}
+
+/// All first names of the paths of a body.
+struct Names(Vec<Name>);
+
+impl Visitor for Names {
+    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+        self.0.extend(path.names.first().cloned());
+    }
+}
+
 /// The statements up to a RETURN; what follows an IF or CASE with one goes into the arms that do not return.
 fn before(mut list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {
     let Some(first) = list.iter().position(returns) else { return taken(list, room) };
@@ -54,10 +149,10 @@ fn before(mut list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {
             StmtKind::Case(selector, arms, arm(otherwise)?)
         }
         kind => {
-            let at = at_return(&Stmt { kind, at }).unwrap_or(at.0);
-            let what = say!("RETURN cannot stand in a loop of a function block");
-            let problem = Problem::new(&codes::NOT_HERE, at, what);
-            return Err(problem.help(say!("leave the loop by EXIT, and ask behind it whether to go on")));
+            // A loop has none any more, see `out_of_loops`.
+            list.push(Stmt { kind, at });
+            list.extend(rest);
+            return taken(list, room);
         }
     };
     list.push(Stmt { kind, at });
