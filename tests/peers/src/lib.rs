@@ -71,6 +71,16 @@ pub fn corpus(part: &str) -> Option<PathBuf> {
     Some(folder)
 }
 
+/// The function library OSCAT Basic as a project of OpenPLC (its files `plc.st`), at `G7_OSCAT`; it is not part of the
+/// repository.
+pub fn oscat() -> Option<PathBuf> {
+    let named = std::env::var_os("G7_OSCAT").map(PathBuf::from).filter(|path| path.is_dir());
+    if named.is_none() {
+        skip("OSCAT absent");
+    }
+    named
+}
+
 /// The schema of SARIF 2.1.0 as OASIS publishes it, at `G7_SARIF_SCHEMA`; it is not part of the repository.
 pub fn sarif_schema() -> Option<PathBuf> {
     let named = std::env::var_os("G7_SARIF_SCHEMA").map(PathBuf::from).filter(|path| path.is_file());

@@ -4,7 +4,10 @@ use std::path::Path;
 
 /// A copy of matiec's C library in which what contradicts IEC 61131-3 is mended. Counters end at PV
 /// and at 0 there; table 36 has them end at PVmax and PVmin. The sum of two TIMEs is wrong where the
-/// parts of a second make exactly one.
+/// parts of a second make exactly one. Numbers become a TIME or TOD, and these numbers, in milliseconds instead of
+/// seconds: the standard leaves the unit open, and CODESYS, TwinCAT and G7 have milliseconds. A shift by the width of
+/// its bits and more, which C leaves open, gives no bits, and LIMIT is MIN(MAX(IN, MN), MX) (table 27) where MN is
+/// greater than MX.
 ///
 /// # Errors
 ///
@@ -16,12 +19,75 @@ pub fn mended(from: &Path, to: &Path) -> std::io::Result<()> {
         let text = std::fs::read_to_string(entry.path())?;
         let text = match entry.file_name().to_str() {
             Some("iec_std_FB.h") => counters(&text),
-            Some("iec_std_lib.h") => text.replace("tv_nsec > 1000000000", "tv_nsec >= 1000000000"),
+            Some("iec_std_lib.h") => {
+                let text = text.replace("tv_nsec > 1000000000", "tv_nsec >= 1000000000");
+                text.replace("static inline TIME    __int_to_time(LINT IN)", &format!("{MILLISECONDS}\nstatic inline TIME    __int_to_time(LINT IN)"))
+            }
+            Some("iec_std_functions.h") => limits(&shifts(&milliseconds(&text))),
             _ => text,
         };
         std::fs::write(to.join(entry.file_name()), text)?;
     }
     Ok(())
+}
+
+/// The C of a program in which a FOR loop whose first value is its last one runs once (2003, 3.3.2.4): matiec compares
+/// before it counts, and leaves such a loop out.
+pub fn loops(text: &str) -> String {
+    let mut mended = String::new();
+    let mut counts = false;
+    for line in text.lines() {
+        match line.trim().strip_prefix("while(").and_then(|l| l.strip_suffix(") {")).filter(|_| counts) {
+            Some(less) => {
+                let most = less.replace(" < ", " <= ").replace(" > ", " >= ");
+                mended += &format!("while( __do_increment ? ({less}) : ({most}) ) {{");
+            }
+            None => mended += line,
+        }
+        mended.push('\n');
+        counts = line.contains("int __do_increment = 0;");
+    }
+    mended
+}
+
+/// The conversions between numbers and times, with the unit by the name of the type.
+const MILLISECONDS: &str = "\
+static inline TIME __int_to_TIME(LINT n) { TIME t; t.tv_sec = n / 1000; t.tv_nsec = n % 1000 * 1000000; return t; }
+static inline TOD __int_to_TOD(LINT n) { return __int_to_TIME(n); }
+static inline DATE __int_to_DATE(LINT n) { DATE t; t.tv_sec = n; t.tv_nsec = 0; return t; }
+static inline DT __int_to_DT(LINT n) { return __int_to_DATE(n); }
+static inline LINT __TIME_to_int(TIME t) { return (LINT)t.tv_sec * 1000 + t.tv_nsec / 1000000; }
+static inline LINT __TOD_to_int(TOD t) { return __TIME_to_int(t); }
+static inline LINT __DATE_to_int(DATE t) { return t.tv_sec; }
+static inline LINT __DT_to_int(DT t) { return t.tv_sec; }
+static inline LREAL __TIME_to_real(TIME t) { return (LREAL)t.tv_sec * 1000 + (LREAL)t.tv_nsec / 1000000; }
+static inline LREAL __TOD_to_real(TOD t) { return __TIME_to_real(t); }
+static inline LREAL __DATE_to_real(DATE t) { return t.tv_sec; }
+static inline LREAL __DT_to_real(DT t) { return t.tv_sec; }
+static inline TIME __real_to_TIME(LREAL x) { LINT n = (LINT)(x * 1000000); TIME t; t.tv_sec = n / 1000000000; \
+t.tv_nsec = n % 1000000000; return t; }
+";
+
+fn milliseconds(text: &str) -> String {
+    text.replace("from_TYPENAME, TIME, __int_to_time)", "from_TYPENAME, TIME, __int_to_TIME)")
+        .replace("to_TYPENAME, __int_to_time)", "to_TYPENAME, __int_to_##to_TYPENAME)")
+        .replace("to_TYPENAME, __time_to_int)", "to_TYPENAME, __##from_TYPENAME##_to_int)")
+        .replace("to_TYPENAME, __time_to_real)", "to_TYPENAME, __##from_TYPENAME##_to_real)")
+        .replace("from_TYPENAME, TIME, __real_to_time)", "from_TYPENAME, TIME, __real_to_TIME)")
+}
+
+fn shifts(text: &str) -> String {
+    let count = "N = N % (8*sizeof(in1_TYPENAME)); if (N == 0) return IN;\\\n  ";
+    let rotated = ["return (IN >> N) | (IN << (8*", "return (IN << N) | (IN >> (8*"];
+    let text = text.replace("return IN OP N;", "return (ULINT)N >= 8*sizeof(in1_TYPENAME) ? 0 : (in1_TYPENAME)(IN OP N);");
+    rotated.iter().fold(text, |text, r| text.replace(r, &format!("{count}{r}")))
+}
+
+fn limits(text: &str) -> String {
+    text.replace("return IN > MN ? IN < MX ? IN : MX : MN;", "if (IN < MN) IN = MN; return IN > MX ? MX : IN;").replace(
+        "return __time_cmp(IN, MN) > 0 ?",
+        "if (__time_cmp(IN, MN) < 0) IN = MN; return __time_cmp(IN, MX) > 0 ? MX : IN; return __time_cmp(IN, MN) > 0 ?",
+    )
 }
 
 /// The counters of INT with the limits of INT.

@@ -7,13 +7,13 @@
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
 use g7_compile::Compiled;
 use g7_compile::ir::VarClass;
 use g7_compile::symbols::Variable;
-use g7_engine::{State, StepId, scan};
+use g7_engine::{Addr, State, StepId, scan};
 use g7_model::{Moment, Type};
 
 use crate::generate::Rng;
@@ -79,32 +79,42 @@ fn key(name: &str) -> String {
 
 /// The course of the engine, scan by scan, until a fault.
 pub fn of_engine(compiled: &Compiled, scans: &[Scan]) -> Vec<Sight> {
+    over_faults(compiled, scans, |_| true).map_while(|sight| sight).collect()
+}
+
+/// The course of the engine, scan by scan, in the variables that are wanted and in the steps. A scan with a fault
+/// gives nothing and changes nothing.
+pub fn over_faults<'c>(
+    compiled: &'c Compiled,
+    scans: &'c [Scan],
+    wanted: impl Fn(&Variable) -> bool,
+) -> impl Iterator<Item = Option<Sight>> {
     let program = &compiled.program;
     let table = program.tables().inputs;
     let mut state = State::new(program);
-    let mut all = Vec::new();
-    for at in scans {
+    let inputs: Vec<&Variable> = simple(compiled).filter(|v| v.class == VarClass::Input).collect();
+    let shown: Vec<(String, Addr)> = simple(compiled).filter(|v| wanted(v)).map(|v| (key(&v.name), v.addr)).collect();
+    scans.iter().map(move |at| {
         let mut words = state.words().get(table.start as usize..table.end as usize).unwrap_or(&[]).to_vec();
-        for v in simple(compiled).filter(|v| v.class == VarClass::Input) {
+        for v in &inputs {
             let given = found(&at.inputs, &v.name);
             if let (Some(word), Some(slot)) = (given, words.get_mut((v.addr.0 - table.start) as usize)) {
                 *slot = word;
             }
         }
+        let before = state.clone();
         if scan(program, &mut state, &words, at.now).is_err() {
-            break;
+            state = before;
+            return None;
         }
         let mut sight = Sight::new();
         for step in (0..compiled.symbols.steps()).map(StepId).filter(|s| compiled.symbols.is_listed(*s)) {
             let name = key(&format!("{}.X", compiled.symbols.step_path(step)));
             sight.insert(name, u64::from(state.is_active(step)));
         }
-        for v in simple(compiled) {
-            sight.insert(key(&v.name), state.word(v.addr));
-        }
-        all.push(sight);
-    }
-    all
+        sight.extend(shown.iter().map(|(name, addr)| (name.clone(), state.word(*addr))));
+        Some(sight)
+    })
 }
 
 /// The value of a name. A name with its chart or program is also found without it, if it has no other owner.
@@ -300,38 +310,68 @@ impl Program {
 ///
 /// The compiler refuses the code, or the program fails.
 pub fn of_matiec(folder: &Path, library: &Path, scans: &[Scan]) -> Result<Vec<Sight>, String> {
-    let program = Program::read(folder)?;
-    let fail = |e: std::io::Error| e.to_string();
-    std::fs::write(folder.join("main.c"), program.main()).map_err(fail)?;
-    let names: BTreeMap<String, u64> =
-        program.places.iter().enumerate().map(|(i, p)| (p.name.clone(), i as u64)).collect();
-    let mut input: Vec<u64> = Vec::new();
-    for scan in scans {
-        let given: Vec<(u64, u64)> =
-            scan.inputs.iter().filter_map(|(n, w)| Some((found(&names, n)?, *w))).collect();
-        input.extend([scan.now as u64, given.len() as u64]);
-        given.iter().for_each(|(i, w)| input.extend([*i, *w]));
-    }
-    let bytes: Vec<u8> = input.iter().flat_map(|w| w.to_le_bytes()).collect();
-    std::fs::write(folder.join("input"), bytes).map_err(fail)?;
-    let mut files = vec!["main.c".to_owned()];
-    for entry in std::fs::read_dir(folder).map_err(fail)?.flatten() {
-        let name = entry.file_name().to_string_lossy().into_owned();
-        if name.ends_with(".c") && name != "POUS.c" && name != "main.c" {
-            files.push(name);
+    Built::new(folder, library, |_| true)?.play(scans)
+}
+
+/// A project that is compiled.
+pub struct Built {
+    folder: PathBuf,
+    program: Program,
+}
+
+impl Built {
+    /// Compiles the C that matiec has put into a folder. Of its variables and steps it has those that are wanted.
+    ///
+    /// # Errors
+    ///
+    /// The compiler refuses the code.
+    pub fn new(folder: &Path, library: &Path, wanted: impl Fn(&str) -> bool) -> Result<Built, String> {
+        let mut program = Program::read(folder)?;
+        program.places.retain(|p| wanted(&p.name));
+        let fail = |e: std::io::Error| e.to_string();
+        std::fs::write(folder.join("main.c"), program.main()).map_err(fail)?;
+        let mut files = vec!["main.c".to_owned()];
+        for entry in std::fs::read_dir(folder).map_err(fail)?.flatten() {
+            let name = entry.file_name().to_string_lossy().into_owned();
+            if name.ends_with(".c") && name != "POUS.c" && name != "main.c" {
+                files.push(name);
+            }
         }
+        // Each with a limit of time.
+        let mut gcc = Command::new("timeout");
+        gcc.args(["60", "gcc"]);
+        gcc.current_dir(folder).arg("-I").arg(library).args(["-w", "-O0", "-std=gnu99", "-o", "project"]);
+        run(gcc.args(&files).arg("-lm"))?;
+        Ok(Built { folder: folder.to_owned(), program })
     }
-    // Each with a limit of time.
-    let mut gcc = Command::new("timeout");
-    gcc.args(["60", "gcc"]);
-    gcc.current_dir(folder).arg("-I").arg(library).args(["-w", "-O0", "-std=gnu99", "-o", "project"]);
-    run(gcc.args(&files).arg("-lm"))?;
-    let stdin = std::fs::File::open(folder.join("input")).map_err(fail)?;
-    let out = run(Command::new("timeout").arg("60").arg(folder.join("project")).stdin(Stdio::from(stdin)))?;
-    let words: Vec<u64> = out.as_chunks::<8>().0.iter().map(|c| u64::from_le_bytes(*c)).collect();
-    let sight =
-        |part: &[u64]| program.places.iter().map(|p| p.name.clone()).zip(part.iter().copied()).collect();
-    Ok(words.chunks_exact(program.places.len().max(1)).map(sight).collect())
+
+    /// Plays the scans from the start and returns what is seen.
+    ///
+    /// # Errors
+    ///
+    /// The program fails.
+    pub fn play(&self, scans: &[Scan]) -> Result<Vec<Sight>, String> {
+        let places = &self.program.places;
+        let fail = |e: std::io::Error| e.to_string();
+        let names: BTreeMap<String, u64> =
+            places.iter().enumerate().map(|(i, p)| (p.name.clone(), i as u64)).collect();
+        let mut input: Vec<u64> = Vec::new();
+        for scan in scans {
+            let given: Vec<(u64, u64)> =
+                scan.inputs.iter().filter_map(|(n, w)| Some((found(&names, n)?, *w))).collect();
+            input.extend([scan.now as u64, given.len() as u64]);
+            given.iter().for_each(|(i, w)| input.extend([*i, *w]));
+        }
+        let bytes: Vec<u8> = input.iter().flat_map(|w| w.to_le_bytes()).collect();
+        let file = self.folder.join("input");
+        std::fs::write(&file, bytes).map_err(fail)?;
+        let stdin = Stdio::from(std::fs::File::open(file).map_err(fail)?);
+        let program = self.folder.join("project");
+        let out = run(Command::new("timeout").arg("60").arg(program).stdin(stdin))?;
+        let words: Vec<u64> = out.as_chunks::<8>().0.iter().map(|c| u64::from_le_bytes(*c)).collect();
+        let sight = |part: &[u64]| places.iter().map(|p| p.name.clone()).zip(part.iter().copied()).collect();
+        Ok(words.chunks_exact(places.len().max(1)).map(sight).collect())
+    }
 }
 
 fn run(command: &mut Command) -> Result<Vec<u8>, String> {
