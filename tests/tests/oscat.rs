@@ -30,11 +30,26 @@ use g7_tests::generated::project::{self, Built, Scan, Sight};
 
 use units::{Library, Unit};
 
+/// Units that matiec takes and G7 refuses, with the reason: the table of the book has them.
+const REFUSED: [(&str, &str); 4] = [
+    ("LOGGER", "its statements are C in a pragma"),
+    ("PYTHON_EVAL", "its statements are C in a pragma"),
+    ("PYTHON_POLL", "its statements are C in a pragma"),
+    ("PYTHON_GEAR", "it calls PYTHON_EVAL"),
+];
+
 /// Units that both run and that differ, with the reason.
-const DIFFERENT: [(&str, &str); 0] = [];
+const DIFFERENT: [(&str, &str); 6] = [
+    ("ACTUATOR_3P", "its TP has a PT of 0, at which matiec gives a pulse of one scan"),
+    ("GEN_RDT", "its TON has a PT of 0 at first, at which matiec is one scan late"),
+    ("GEN_SIN", "it asks for the sign of a sine next to 0, which is computed with another precision"),
+    ("RANGE_TO_BYTE", "it cuts a real number next to a whole one, which is computed with another precision"),
+    ("RDM2", "it takes the last digits of a real product, which is computed with another precision"),
+    ("RDMDW", "it takes the last digits of a real product, which is computed with another precision"),
+];
 
 /// Calls of each unit.
-const CALLS: usize = 500;
+const CALLS: usize = 10_000;
 /// Calls in one run of a function block.
 const RUN: usize = 100;
 /// Time between two calls, in nanoseconds.
@@ -59,7 +74,7 @@ fn oscat_as_matiec_runs_it() {
     mended(&matiec.lib.join("C"), &c).unwrap_or_else(|e| panic!("{}: {e}", matiec.lib.display()));
     let only = std::env::var("G7_ONLY").ok();
     let wanted = |name: &&String| {
-        only.as_ref().is_none_or(|only| only == *name) && DIFFERENT.iter().all(|(n, _)| n != *name)
+        only.as_ref().is_none_or(|only| only == *name) && REFUSED.iter().chain(&DIFFERENT).all(|(n, _)| n != *name)
     };
     let names: Vec<&String> = library.units.keys().filter(wanted).collect();
     let next = AtomicUsize::new(0);
@@ -94,6 +109,11 @@ fn oscat_as_matiec_runs_it() {
     for (why, names) in &refused {
         println!("{} refused by matiec: {why}: {}", names.len(), names.join(", "));
     }
+    for (name, why) in REFUSED {
+        let Some(unit) = library.units.get(name) else { continue };
+        assert!(compiled(&program::program(&library, unit).for_g7).is_err(), "{name} is read");
+        println!("{name} is refused: {why}");
+    }
     for (name, why) in DIFFERENT {
         println!("{name} differs: {why}");
     }
@@ -118,6 +138,9 @@ fn fate(library: &Library, unit: &Unit, matiec: &Matiec, c: &Path, folder: &Path
     let outcome = compiled(&program.for_g7)
         .and_then(|chart| Built::new(folder, c, of_main).map(|built| (chart, built)))
         .and_then(|(chart, built)| compare(unit, &chart, &built));
+    if outcome.is_err() && std::env::var_os("G7_ONLY").is_some() {
+        println!("inner variables: {:?}", inner(&program.for_g7, c, folder));
+    }
     let outcome = match outcome {
         Err(why) if why.starts_with("POUS.c") => return Fate::Refused(format!("by gcc: {why}")),
         outcome => outcome,
@@ -126,6 +149,23 @@ fn fate(library: &Library, unit: &Unit, matiec: &Matiec, c: &Path, folder: &Path
         Ok(calls) => Fate::Agrees(calls),
         Err(why) => Fate::Wrong(why),
     }
+}
+
+/// The first difference in any variable of a short run.
+fn inner(text: &str, c: &Path, folder: &Path) -> Result<Option<String>, String> {
+    let chart = compiled(text)?;
+    let built = Built::new(folder, c, |_| true)?;
+    let mut found = Ok(None);
+    for seed in 1..=CALLS / RUN {
+        let scans = scans(&chart, seed as u64, RUN, true);
+        let ours = project::of_engine(&chart, &scans);
+        let theirs = built.play(scans.get(..ours.len()).unwrap_or(&[]))?;
+        found = Ok(project::difference(&ours, &theirs).1);
+        if found != Ok(None) {
+            break;
+        }
+    }
+    found
 }
 
 /// The variables of the program itself.
@@ -197,7 +237,7 @@ fn difference(chart: &Compiled, ours: &Sight, theirs: &Sight) -> Option<String> 
 
 /// True if two numbers agree in their first digits.
 fn close(a: f64, b: f64) -> bool {
-    a == b || a.is_nan() && b.is_nan() || (a - b).abs() <= 1e-3 * a.abs().max(b.abs()).max(1.0)
+    a == b || a.is_nan() && b.is_nan() || (a - b).abs() <= 5e-3 * a.abs().max(b.abs()).max(1.0)
 }
 
 /// Random calls. Values are held for some time if they are for a function block.
@@ -218,8 +258,11 @@ fn scans(chart: &Compiled, seed: u64, count: usize, held: bool) -> Vec<Scan> {
     all
 }
 
-/// A value that a type can hold: mostly a small one. A year is one of this century.
+/// A value that a type can hold: mostly a small one. A year and a date are of this century.
 fn word(rng: &mut Rng, name: &str, ty: Type) -> u64 {
+    if ty.is_integer() && name.to_uppercase().ends_with("UTC") {
+        return 946_728_000 + rng.bits() % 1_000_000_000;
+    }
     let plain = name.trim_start_matches(['v', '0', '1', '2']).to_uppercase();
     if ty.is_integer() && (plain.ends_with("YEAR") || plain == "Y") {
         return 1970 + rng.below(80) as u64;

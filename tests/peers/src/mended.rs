@@ -7,7 +7,7 @@ use std::path::Path;
 /// parts of a second make exactly one. Numbers become a TIME or TOD, and these numbers, in milliseconds instead of
 /// seconds: the standard leaves the unit open, and CODESYS, TwinCAT and G7 have milliseconds. A shift by the width of
 /// its bits and more, which C leaves open, gives no bits, and LIMIT is MIN(MAX(IN, MN), MX) (table 27) where MN is
-/// greater than MX.
+/// greater than MX. The product of a TIME has more nanoseconds than an int holds.
 ///
 /// # Errors
 ///
@@ -21,6 +21,9 @@ pub fn mended(from: &Path, to: &Path) -> std::io::Result<()> {
             Some("iec_std_FB.h") => counters(&text),
             Some("iec_std_lib.h") => {
                 let text = text.replace("tv_nsec > 1000000000", "tv_nsec >= 1000000000");
+                let text = text.replace("static inline TIME __time_add(", &format!("{OF_NANOSECONDS}static inline TIME __time_add("));
+                let product = "  LREAL s_f = IN1.tv_sec * IN2;";
+                let text = text.replace(product, &format!("  return __of_ns(__ns(IN1) * IN2);\n{product}"));
                 text.replace("static inline TIME    __int_to_time(LINT IN)", &format!("{MILLISECONDS}\nstatic inline TIME    __int_to_time(LINT IN)"))
             }
             Some("iec_std_functions.h") => limits(&shifts(&milliseconds(&text))),
@@ -49,6 +52,12 @@ pub fn loops(text: &str) -> String {
     }
     mended
 }
+
+/// A TIME as a number of nanoseconds.
+const OF_NANOSECONDS: &str = "\
+static inline LREAL __ns(TIME t) { return (LREAL)((LINT)t.tv_sec * 1000000000 + t.tv_nsec); }
+static inline TIME __of_ns(LREAL n) { TIME t; t.tv_sec = (LINT)n / 1000000000; t.tv_nsec = (LINT)n % 1000000000; return t; }
+";
 
 /// The conversions between numbers and times, with the unit by the name of the type.
 const MILLISECONDS: &str = "\

@@ -19,7 +19,12 @@ pub fn settle(document: &mut Document) {
             Item::Var(v) => file.variables(v),
             Item::Action(a) => file.declare(&a.name, None),
             Item::Section(s) => file.declare(&s.name, None),
-            Item::Function(f) => file.declare(&f.name, None),
+            Item::Function(f) => {
+                file.declare(&f.name, None);
+                let mut own = Spelling::default();
+                f.params.iter().for_each(|p| own.declare(&p.name, None));
+                types.insert(upper(&f.name), (f.name.text.clone(), own));
+            }
             Item::Chart(c) => file.declare(&c.name, None),
             Item::Composed(c) => _ = types.insert(upper(&c.name), (c.name.text.clone(), of_type(c))),
             _ => {}
@@ -65,7 +70,7 @@ fn upper(name: &Name) -> String {
     name.text.to_uppercase()
 }
 
-/// The types of the file by their upper-case names: their spelling, and their members.
+/// The types and functions of the file by their upper-case names: their spelling, and their members or inputs.
 type Types = HashMap<String, (Box<str>, Spelling)>;
 
 /// A declared name.
@@ -383,6 +388,10 @@ impl<'a> Settler<'a> {
             }
             ExprKind::Call(path, args) => {
                 self.function(path);
+                let called = path.names.first().map(upper);
+                for name in args.iter_mut().filter_map(|a| a.name.as_mut()) {
+                    called.as_ref().and_then(|of| self.member(of, name));
+                }
                 self.args(args);
             }
             ExprKind::Element(path, index, _) => {
