@@ -114,25 +114,29 @@ fn real(x: &Typed, single: fn(f32) -> f32, double: fn(f64) -> f64) -> Run<Typed>
 
 /// Converts a value to the common type of a list.
 fn alike(x: &Typed, all: &[Typed]) -> Run<Typed> {
-    let mut so_far = x.clone();
-    for other in all {
-        if let Some(ty) = common(&so_far, other)? {
-            so_far = Typed::of(ty, so_far.to(ty)?);
-        }
+    // Numbers without a type come last: each need fit only the type that all others have together.
+    let (typed, plain): (Vec<&Typed>, Vec<&Typed>) = all.iter().chain([x]).partition(|t| t.ty.is_some());
+    let mut ty = None;
+    for other in typed.into_iter().chain(plain) {
+        ty = common(&Typed { ty: ty.or(other.ty), v: other.v.clone() }, other)?.or(ty);
     }
-    Ok(so_far)
+    match ty {
+        Some(ty) => Ok(Typed::of(ty, x.to(ty)?)),
+        None => Ok(x.clone()),
+    }
 }
 
 fn extreme(better: BinaryOp, first: &Typed, rest: &[Typed]) -> Run<Typed> {
-    let mut best = first.clone();
+    // All are of their common type before they are compared: a number need not fit the narrowest one.
+    let all: Vec<Typed> = std::iter::once(first).chain(rest).cloned().collect();
+    let mut best = alike(first, &all)?;
     for x in rest {
-        if binary(better, x, &best)?.truth()? {
-            best = x.clone();
+        let x = alike(x, &all)?;
+        if binary(better, &x, &best)?.truth()? {
+            best = x;
         }
     }
-    let mut all = rest.to_vec();
-    all.push(first.clone());
-    alike(&best, &all)
+    Ok(best)
 }
 
 fn truncated(x: &Typed) -> Run<f64> {

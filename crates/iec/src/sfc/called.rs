@@ -4,7 +4,7 @@
 //! functions -> here -> instances
 //! ```
 //!
-//! `a := f(x) + 1` becomes `f_1(x := x); a := f_1.f + 1`. A condition of a loop is computed within the loop.
+//! `a := f(x) + 1` becomes `f_2(x := x); a := f_2.f + 1`. A condition of a loop is computed within the loop.
 
 use std::collections::{HashMap, HashSet};
 
@@ -164,7 +164,7 @@ impl Calls<'_> {
     /// The call of a new instance, if the path is one of the functions.
     fn call(&mut self, path: &Path, args: &[Arg], at: Span) -> Option<Stmt> {
         let (name, parameters) = self.parameters.get(&callee(path)?)?;
-        let own = self.taken.give(&format!("{}_1", name.text));
+        let own = self.taken.give(&name.text);
         let args = args.iter().enumerate().map(|(k, arg)| {
             let Some((name, section)) = parameters.get(k).filter(|_| arg.name.is_none()) else { return arg.clone() };
             Arg { name: Some(name.clone()), output: *section == Section::Output, value: arg.value.clone() }

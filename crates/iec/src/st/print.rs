@@ -281,7 +281,9 @@ impl Writer<'_> {
         let own = self.types.functions.get(&*name).copied();
         let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
         let common = texts.iter().fold(Ty::Whole, |all, t| match (all, t.ty) {
-            (Ty::Known(a), Ty::Known(b)) if a.is_number() && b.is_number() => Ty::Known(wider(a, b)),
+            (Ty::Known(a), Ty::Known(b)) if counts(a) && counts(b) && a.is_bits() == b.is_bits() => {
+                Ty::Known(wider(a, b))
+            }
             (Ty::Known(a), _) if a != Type::Bool => Ty::Known(a),
             (_, ty) => ty,
         });
@@ -294,7 +296,7 @@ impl Writer<'_> {
         let mut parts = Vec::new();
         for (arg, text) in args.iter().zip(texts) {
             let text = match common {
-                Ty::Known(t) if alike && t.is_number() => text.converted(t).text,
+                Ty::Known(t) if alike && counts(t) => text.converted(t).text,
                 _ => text.text,
             };
             parts.push(match &arg.name {

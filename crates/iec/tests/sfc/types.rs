@@ -204,7 +204,7 @@ fn what_has_no_counterpart_is_told_at_its_place() {
     let (_, problems) = import(&format!("{action}{}", program("f : b;", "f();")));
     let what = "the action `more` of a unit without steps is left out";
     assert!(problems.iter().any(|p| &*p.what == what), "{problems:?}");
-    let cases: [(String, &str); 7] = [
+    let cases: [(String, &str); 6] = [
         (
             format!(
                 "TYPE s : STRUCT x : INT; END_STRUCT := (x := 2); m : (Off, On); END_TYPE {}",
@@ -217,10 +217,6 @@ fn what_has_no_counterpart_is_told_at_its_place() {
         (
             format!("{block}{}", program("f : ARRAY[0..1] OF b; i : INT;", "f[i * 2](x := TRUE);")),
             "the index of a function block that is called is one number, a name, or a name with a number added",
-        ),
-        (
-            "FUNCTION f : INT VAR_INPUT a : ARRAY[0..1] OF INT; END_VAR f := a[0]; END_FUNCTION".into(),
-            "an array, a structure or a function block in a function",
         ),
         (
             format!(
