@@ -35,7 +35,7 @@ PAGE := $(shell find web/src docs/book/src/problems docs/book/fr docs/book/pt cr
 EXTENSION := editors/vscode
 EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
 
-.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table interop online-bench soak faults book blocks fuzz help FORCE
+.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table oscat interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -266,6 +266,11 @@ prove-bench: checkers
 prove-table:
 	cargo run --profile soak --quiet --package g7-tests --example prove_table -- $(or $(LIMIT),5) examples tests/spec/litmus \
 		$(or $(G7_CORPUS),$(wildcard ../shared/corpus))
+
+## each function and function block of OSCAT Basic beside matiec's C, about ten minutes (G7_OSCAT=… names a checkout of https://github.com/wonka929/OSCAT_OpenPLC, iec2c stands in the PATH; ONLY=… for one of them)
+oscat:
+	@test -d "$(G7_OSCAT)" || { echo "OSCAT is no package: let G7_OSCAT name a checkout of https://github.com/wonka929/OSCAT_OpenPLC"; exit 1; }
+	$(if $(ONLY),G7_ONLY=$(ONLY)) cargo test --quiet --package g7-tests --test oscat -- --nocapture
 
 ## charts written for Beremiz, OpenPLC, matiec, IronPLC, pyecore and compilers, taken by these and run beside the engine, as a table with each refusal (G7_BEREMIZ=…, G7_XML2ST=… name folders, iec2c and ironplcc stand in the PATH, Python has lxml and pyecore; ON=… for other files; LIMIT=… seconds for each row, 600 if not said)
 interop: export G7_PEERS = $(PYTHON)

@@ -21,10 +21,16 @@ pub fn mended(from: &Path, to: &Path) -> std::io::Result<()> {
             Some("iec_std_FB.h") => counters(&text),
             Some("iec_std_lib.h") => {
                 let text = text.replace("tv_nsec > 1000000000", "tv_nsec >= 1000000000");
-                let text = text.replace("static inline TIME __time_add(", &format!("{OF_NANOSECONDS}static inline TIME __time_add("));
+                let text = text.replace(
+                    "static inline TIME __time_add(",
+                    &format!("{OF_NANOSECONDS}static inline TIME __time_add("),
+                );
                 let product = "  LREAL s_f = IN1.tv_sec * IN2;";
                 let text = text.replace(product, &format!("  return __of_ns(__ns(IN1) * IN2);\n{product}"));
-                text.replace("static inline TIME    __int_to_time(LINT IN)", &format!("{MILLISECONDS}\nstatic inline TIME    __int_to_time(LINT IN)"))
+                text.replace(
+                    "static inline TIME    __int_to_time(LINT IN)",
+                    &format!("{MILLISECONDS}\nstatic inline TIME    __int_to_time(LINT IN)"),
+                )
             }
             Some("iec_std_functions.h") => limits(&shifts(&milliseconds(&text))),
             _ => text,
@@ -88,7 +94,10 @@ fn milliseconds(text: &str) -> String {
 fn shifts(text: &str) -> String {
     let count = "N = N % (8*sizeof(in1_TYPENAME)); if (N == 0) return IN;\\\n  ";
     let rotated = ["return (IN >> N) | (IN << (8*", "return (IN << N) | (IN >> (8*"];
-    let text = text.replace("return IN OP N;", "return (ULINT)N >= 8*sizeof(in1_TYPENAME) ? 0 : (in1_TYPENAME)(IN OP N);");
+    let text = text.replace(
+        "return IN OP N;",
+        "return (ULINT)N >= 8*sizeof(in1_TYPENAME) ? 0 : (in1_TYPENAME)(IN OP N);",
+    );
     rotated.iter().fold(text, |text, r| text.replace(r, &format!("{count}{r}")))
 }
 

@@ -93,7 +93,8 @@ pub fn over_faults<'c>(
     let table = program.tables().inputs;
     let mut state = State::new(program);
     let inputs: Vec<&Variable> = simple(compiled).filter(|v| v.class == VarClass::Input).collect();
-    let shown: Vec<(String, Addr)> = simple(compiled).filter(|v| wanted(v)).map(|v| (key(&v.name), v.addr)).collect();
+    let shown: Vec<(String, Addr)> =
+        simple(compiled).filter(|v| wanted(v)).map(|v| (key(&v.name), v.addr)).collect();
     scans.iter().map(move |at| {
         let mut words = state.words().get(table.start as usize..table.end as usize).unwrap_or(&[]).to_vec();
         for v in &inputs {
@@ -310,7 +311,7 @@ impl Program {
 ///
 /// The compiler refuses the code, or the program fails.
 pub fn of_matiec(folder: &Path, library: &Path, scans: &[Scan]) -> Result<Vec<Sight>, String> {
-    Built::new(folder, library, |_| true)?.play(scans)
+    Built::new(folder, library, &[], |_| true)?.play(scans)
 }
 
 /// A project that is compiled.
@@ -320,12 +321,18 @@ pub struct Built {
 }
 
 impl Built {
-    /// Compiles the C that matiec has put into a folder. Of its variables and steps it has those that are wanted.
+    /// Compiles the C that matiec has put into a folder, with more flags of gcc. Of its variables and steps it has
+    /// those that are wanted.
     ///
     /// # Errors
     ///
     /// The compiler refuses the code.
-    pub fn new(folder: &Path, library: &Path, wanted: impl Fn(&str) -> bool) -> Result<Built, String> {
+    pub fn new(
+        folder: &Path,
+        library: &Path,
+        flags: &[&str],
+        wanted: impl Fn(&str) -> bool,
+    ) -> Result<Built, String> {
         let mut program = Program::read(folder)?;
         program.places.retain(|p| wanted(&p.name));
         let fail = |e: std::io::Error| e.to_string();
@@ -341,7 +348,7 @@ impl Built {
         let mut gcc = Command::new("timeout");
         gcc.args(["60", "gcc"]);
         gcc.current_dir(folder).arg("-I").arg(library).args(["-w", "-O0", "-std=gnu99", "-o", "project"]);
-        run(gcc.args(&files).arg("-lm"))?;
+        run(gcc.args(flags).args(&files).arg("-lm"))?;
         Ok(Built { folder: folder.to_owned(), program })
     }
 

@@ -12,7 +12,11 @@ use super::units::{Library, Parameter, Type, Unit};
 /// The functions with which this port of OSCAT asks for the time: the body in C for matiec, and that for G7.
 const CLOCKS: [(&str, &str, &str); 2] = [
     ("T_PLC_MS", "__CURRENT_TIME.tv_sec * 1000 + __CURRENT_TIME.tv_nsec / 1000000", "TIME_TO_UDINT(TIME())"),
-    ("T_PLC_US", "__CURRENT_TIME.tv_sec * 1000000 + __CURRENT_TIME.tv_nsec / 1000", "TIME_TO_UDINT(TIME()) * 1000"),
+    (
+        "T_PLC_US",
+        "__CURRENT_TIME.tv_sec * 1000000 + __CURRENT_TIME.tv_nsec / 1000",
+        "TIME_TO_UDINT(TIME()) * 1000",
+    ),
 ];
 
 /// Texts that a program is given.
@@ -83,7 +87,9 @@ pub(crate) fn program(library: &Library, unit: &Unit) -> Program {
              tx;\nEND_FUNCTION\n"
         )
     };
-    let in_c = |k: usize| function(k, &format!("tx := 0;\n{{TX = (UDINT)({});}}\n", CLOCKS.get(k).map_or("", |c| c.1)));
+    let in_c = |k: usize| {
+        function(k, &format!("tx := 0;\n{{TX = (UDINT)({});}}\n", CLOCKS.get(k).map_or("", |c| c.1)))
+    };
     let in_st = |k: usize| function(k, &format!("tx := {};\n", CLOCKS.get(k).map_or("", |c| c.2)));
     Program { for_matiec: with(&in_c), for_g7: with(&in_st) }
 }
@@ -100,7 +106,8 @@ fn named_arrays(library: &Library, text: &str) -> String {
             continue;
         };
         let end = rest.find(":=").or_else(|| rest.find(';')).unwrap_or(rest.len());
-        let ty = rest.get(..end).unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" ").to_uppercase();
+        let ty =
+            rest.get(..end).unwrap_or("").split_whitespace().collect::<Vec<_>>().join(" ").to_uppercase();
         let place = names.iter().position(|n| *n == ty).unwrap_or_else(|| {
             names.push(ty);
             names.len() - 1
@@ -219,7 +226,8 @@ impl Array {
         let upper = ty.to_uppercase();
         let (head, element) = upper.strip_prefix("ARRAY")?.split_once(" OF ")?;
         let bounds = head.trim().trim_matches(['[', ']']).split(',');
-        let bounds = bounds.filter_map(|b| b.trim().split_once("..")).map(|(a, b)| (a.trim().into(), b.trim().into()));
+        let bounds =
+            bounds.filter_map(|b| b.trim().split_once("..")).map(|(a, b)| (a.trim().into(), b.trim().into()));
         Some(Array { bounds: bounds.collect(), element: element.trim().to_owned() })
     }
 

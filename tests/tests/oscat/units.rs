@@ -177,7 +177,8 @@ impl Unit {
         let plain = bare(&text);
         let section = |word: &str| {
             let parts = plain.split("END_VAR").filter_map(|part| {
-                let (_, own) = part.split_once(&format!("{word} ")).or_else(|| part.split_once(&format!("{word}\n")))?;
+                let (_, own) =
+                    part.split_once(&format!("{word} ")).or_else(|| part.split_once(&format!("{word}\n")))?;
                 Some(parameters(own.trim_start().trim_start_matches("CONSTANT").trim_start_matches("RETAIN")))
             });
             parts.flatten().collect::<Vec<_>>()

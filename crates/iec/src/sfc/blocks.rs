@@ -73,9 +73,7 @@ fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mu
                 decl.kind = VarKind::Var;
                 inouts.push(decl);
             }
-            Section::Temp if is_local(&decl) => {
-                locals.push(Local { names: decl.names, ty: decl.ty, init: decl.init, at: decl.at })
-            }
+            Section::Temp if is_local(&decl) => locals.push(local(decl, report)),
             Section::Temp | Section::Local | Section::Global | Section::Input | Section::Output => {
                 if section == Section::Temp {
                     let name = decl.names.first().map_or("", |n| &*n.text);
@@ -96,6 +94,16 @@ fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mu
     let body = Body::St(Block { locals, statements, at: body_at.into() });
     let at = unit.at.into();
     Composed { name: unit.name, comment: None, members, inouts, block: true, body: Some(body), at }
+}
+
+/// A local variable of a body. It has no limits.
+pub(super) fn local(decl: VarDecl, report: &mut Report) -> Local {
+    if decl.limits.is_some() {
+        let name = decl.names.first().map_or("", |n| &*n.text);
+        let what = say!("the limits of the local variable `{name}` are not checked");
+        report.put(Problem::new(&codes::LEFT_OUT, decl.at.0, what));
+    }
+    Local { names: decl.names, ty: decl.ty, init: decl.init, at: decl.at }
 }
 
 /// True if a variable can be a local one of a body.
@@ -133,7 +141,10 @@ pub(super) fn no_type(source: &Source, ty: &Name) -> Said {
 /// Reports statements of another language in a unit that is carried over.
 pub(super) fn foreign(unit: &Unit, report: &mut Report) {
     if let Some(at) = unit.foreign {
-        let what = say!("`{}` has statements in a pragma, in C or another language; they are not read", unit.name.text);
+        let what = say!(
+            "`{}` has statements in a pragma, in C or another language; they are not read",
+            unit.name.text
+        );
         report.put(Problem::new(&codes::NOT_CARRIED, at, what));
     }
 }

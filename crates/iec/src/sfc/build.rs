@@ -5,11 +5,11 @@ use std::collections::{HashMap, HashSet};
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Composed, Document, Expr,
-    ExprKind, Function, Item, Literal, Local, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName,
-    Step, StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
+    ExprKind, Function, Item, Literal, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName, Step,
+    StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
 };
 
-use super::blocks::{foreign, lost_actions, no_type};
+use super::blocks::{foreign, local, lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
 use crate::report::Report;
 use crate::st::{Section, Variable, settle};
@@ -356,7 +356,12 @@ impl Builder<'_> {
     }
 
     fn function(&mut self, unit: &Unit) -> Option<Function> {
-        let result = unit.result.as_ref()?.decl.ty;
+        let given = &unit.result.as_ref()?.decl;
+        if given.limits.is_some() {
+            let what = say!("the limits of the result of `{}` are not checked", unit.name.text);
+            self.report.put(Problem::new(&codes::LEFT_OUT, given.at.0, what));
+        }
+        let result = given.ty;
         foreign(unit, self.report);
         let mut params = Vec::new();
         let mut locals = Vec::new();
@@ -369,12 +374,7 @@ impl Builder<'_> {
                 Section::Input => {
                     params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));
                 }
-                _ => locals.push(Local {
-                    names: decl.names.clone(),
-                    ty: decl.ty,
-                    init: decl.init.clone(),
-                    at: decl.at,
-                }),
+                _ => locals.push(local(decl.clone(), self.report)),
             }
         }
         let statements: Vec<Stmt> = unit.body.clone();

@@ -13,8 +13,7 @@ use g7_model::{
     Arg, Expr, ExprKind, Name, Path, Problem, Span, Stmt, StmtKind, Type, VarDecl, VarKind, codes, say,
 };
 
-use super::functions::{callee, upper};
-use super::unit::{Part, Source, Unit};
+use super::unit::{Part, Source, Unit, callee, upper};
 use crate::nodes::{self, Taken};
 use crate::report::Report;
 use crate::st::{Section, Variable};
@@ -33,7 +32,13 @@ pub(super) fn expand(source: &mut Source, wide: &HashSet<String>, report: &mut R
     variables.flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
     source.units.iter().for_each(|u| _ = taken.take(&u.name.text));
     for unit in &mut source.units {
-        let mut calls = Calls { parameters: &parameters, taken: &mut taken, report, made: Vec::new(), before: Vec::new() };
+        let mut calls = Calls {
+            parameters: &parameters,
+            taken: &mut taken,
+            report,
+            made: Vec::new(),
+            before: Vec::new(),
+        };
         unit.body = calls.list(std::mem::take(&mut unit.body));
         for part in &mut unit.parts {
             match part {
@@ -53,7 +58,9 @@ fn parameters(source: &Source, wide: &HashSet<String>) -> Parameters {
             let own = unit.vars.iter().filter(move |v| v.section == section);
             own.flat_map(|v| &v.decl.names).map(move |n| (n.clone(), section))
         };
-        let own = |(name, section): &(Name, Section)| *section != Section::Output || upper(name) != upper(&unit.name);
+        let own = |(name, section): &(Name, Section)| {
+            *section != Section::Output || upper(name) != upper(&unit.name)
+        };
         all(Section::Input).chain(all(Section::InOut)).chain(all(Section::Output).filter(own)).collect()
     };
     let units = source.units.iter().filter(|u| wide.contains(&upper(&u.name)));
@@ -166,7 +173,9 @@ impl Calls<'_> {
         let (name, parameters) = self.parameters.get(&callee(path)?)?;
         let own = self.taken.give(&name.text);
         let args = args.iter().enumerate().map(|(k, arg)| {
-            let Some((name, section)) = parameters.get(k).filter(|_| arg.name.is_none()) else { return arg.clone() };
+            let Some((name, section)) = parameters.get(k).filter(|_| arg.name.is_none()) else {
+                return arg.clone();
+            };
             Arg { name: Some(name.clone()), output: *section == Section::Output, value: arg.value.clone() }
         });
         let instance = nodes::path(&[&own], at);
@@ -182,7 +191,8 @@ impl Calls<'_> {
     /// A receptivity has no statement before it.
     fn refuse(&mut self, receptivity: &mut Expr) {
         if !self.within(receptivity).is_empty() {
-            let what = say!("a function with structures, arrays or outputs in a receptivity; call it in an action");
+            let what =
+                say!("a function with structures, arrays or outputs in a receptivity; call it in an action");
             self.report.put(Problem::new(&codes::NOT_CARRIED, receptivity.at.0, what));
         }
     }
@@ -191,7 +201,9 @@ impl Calls<'_> {
 impl Visitor for Calls<'_> {
     fn expr(&mut self, e: &mut Expr) {
         let ExprKind::Call(path, args) = &e.kind else { return };
-        let Some(function) = callee(path).and_then(|n| self.parameters.get(&n)).map(|f| f.0.clone()) else { return };
+        let Some(function) = callee(path).and_then(|n| self.parameters.get(&n)).map(|f| f.0.clone()) else {
+            return;
+        };
         let Some(call) = self.call(path, args, e.at.0) else { return };
         let StmtKind::Call(instance, _) = &call.kind else { return };
         let mut names = instance.names.clone();

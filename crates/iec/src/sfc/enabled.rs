@@ -9,10 +9,10 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::visit_mut::{self, Visitor};
+use g7_model::visit_mut::Visitor;
 use g7_model::{Arg, Expr, ExprKind, Name, Path, Problem, Stmt, StmtKind, VarDecl, codes, say};
 
-use super::unit::{Part, Source};
+use super::unit::{Source, each};
 use crate::nodes;
 use crate::report::Report;
 
@@ -27,14 +27,7 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
         let mut variables = globals.clone();
         variables.extend(types(unit.vars.iter().map(|v| &v.decl)));
         let mut enabled = Enabled { file: &file, variables, report };
-        visit_mut::stmts(&mut unit.body, &mut enabled);
-        for part in &mut unit.parts {
-            match part {
-                Part::Action { body, .. } => visit_mut::stmts(body, &mut enabled),
-                Part::Transition(t) => visit_mut::expr(&mut t.receptivity, &mut enabled),
-                Part::Step { .. } => {}
-            }
-        }
+        each(unit, &mut enabled);
     }
 }
 
@@ -122,7 +115,8 @@ impl Visitor for Enabled<'_> {
         let (en, eno) = (taken(args, "EN", false), taken(args, "ENO", true));
         let other = en.filter(|e| nodes::truth(e) != Some(true)).or(eno);
         if let Some(other) = other {
-            let what = say!("`EN` of a function in an expression is TRUE, and `ENO` is not read; write an IF");
+            let what =
+                say!("`EN` of a function in an expression is TRUE, and `ENO` is not read; write an IF");
             self.report.put(Problem::new(&codes::NOT_CARRIED, other.at.0, what));
         }
     }

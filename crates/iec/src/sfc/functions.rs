@@ -14,12 +14,12 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    Arg, Expr, ExprKind, FbKind, Name, Nanos, Path, Problem, Span, Stmt, Type, UnaryOp, VarDecl, VarKind, codes,
-    say,
+    Arg, Expr, ExprKind, FbKind, Name, Nanos, Path, Problem, Span, Stmt, Type, UnaryOp, VarDecl, VarKind,
+    codes, say,
 };
 
 use super::called;
-use super::unit::{Part, Source, Unit, UnitKind};
+use super::unit::{Source, Unit, UnitKind, callee, each, upper};
 use crate::nodes::{self, Taken};
 use crate::report::Report;
 use crate::st::{Section, Variable};
@@ -42,30 +42,6 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
         into_block(unit, report);
     }
     called::expand(source, &wide, report);
-}
-
-/// Visits all statements and receptivities of a unit.
-pub(super) fn each(unit: &mut Unit, v: &mut impl Visitor) {
-    visit_mut::stmts(&mut unit.body, v);
-    for part in &mut unit.parts {
-        match part {
-            Part::Action { body, .. } => visit_mut::stmts(body, v),
-            Part::Transition(t) => visit_mut::expr(&mut t.receptivity, v),
-            Part::Step { .. } => {}
-        }
-    }
-}
-
-pub(super) fn upper(name: &Name) -> String {
-    name.text.to_uppercase()
-}
-
-/// The name of the function that an expression calls, in upper case.
-pub(super) fn callee(path: &Path) -> Option<String> {
-    match path.names.as_slice() {
-        [name] => Some(upper(name)),
-        _ => None,
-    }
 }
 
 /// Gives a file that calls `TIME()` a timer that runs from the start.
@@ -212,7 +188,8 @@ fn wide(source: &Source) -> HashSet<String> {
     let of_type = |v: &VarDecl| v.array.is_some() || v.of.is_some();
     let is_wide = |u: &&Unit| {
         let outward = |v: &Variable| matches!(v.section, Section::Output | Section::InOut);
-        u.result.as_ref().is_some_and(|r| of_type(&r.decl)) || u.vars.iter().any(|v| of_type(&v.decl) || outward(v))
+        u.result.as_ref().is_some_and(|r| of_type(&r.decl))
+            || u.vars.iter().any(|v| of_type(&v.decl) || outward(v))
     };
     let mut wide: HashSet<String> = functions().filter(is_wide).map(|u| upper(&u.name)).collect();
     loop {

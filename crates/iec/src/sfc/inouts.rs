@@ -14,8 +14,7 @@ use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{Arg, Expr, ExprKind, Name, Path, Problem, Span, Stmt, StmtKind, codes, say};
 
 use super::enabled::{File, Types, types};
-use super::functions::{each, upper};
-use super::unit::{Part, Source, Unit, UnitKind};
+use super::unit::{Part, Source, Unit, UnitKind, each, upper};
 use crate::nodes;
 use crate::report::Report;
 use crate::st::Section;
@@ -39,7 +38,10 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
     let mut kept = HashSet::new();
     for unit in &source.units {
         let variables = scope(unit);
-        each(&mut unit.clone(), &mut Uses { file: &file, variables: &variables, parameters: &parameters, kept: &mut kept });
+        each(
+            &mut unit.clone(),
+            &mut Uses { file: &file, variables: &variables, parameters: &parameters, kept: &mut kept },
+        );
     }
     if kept.is_empty() {
         return;
@@ -59,7 +61,9 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
         for v in unit.vars.iter_mut().filter(|v| v.section == Section::InOut) {
             v.section = Section::Input;
             let name = v.decl.names.first().map_or("", |n| &*n.text);
-            let what = say!("`{name}` is used as a variable of the instance: a call copies it in and out, as matiec does");
+            let what = say!(
+                "`{name}` is used as a variable of the instance: a call copies it in and out, as matiec does"
+            );
             report.put(Problem::new(&codes::DIFFERENT, v.decl.at.0, what));
         }
     }
@@ -92,9 +96,8 @@ impl Visitor for Uses<'_> {
             let (before, behind) = path.names.split_at(n);
             let Some(of) = self.file.type_of(before, self.variables) else { continue };
             let member = behind.first().map(|m| m.text.split('[').next().unwrap_or("").to_uppercase());
-            let inout = |(name, section): &(Name, Section)| {
-                *section == Section::InOut && Some(upper(name)) == member
-            };
+            let inout =
+                |(name, section): &(Name, Section)| *section == Section::InOut && Some(upper(name)) == member;
             if self.parameters.get(of).is_some_and(|all| all.iter().any(inout)) {
                 self.kept.insert(of.clone());
             }
@@ -116,7 +119,8 @@ impl Visitor for Uses<'_> {
 
 /// The argument for a parameter, by its name or its place.
 fn argument<'a>(args: &'a [Arg], place: usize, name: &Name) -> Option<&'a Arg> {
-    let named = args.iter().find(|a| a.name.as_ref().is_some_and(|n| n.text.eq_ignore_ascii_case(&name.text)));
+    let named =
+        args.iter().find(|a| a.name.as_ref().is_some_and(|n| n.text.eq_ignore_ascii_case(&name.text)));
     named.or_else(|| args.get(place).filter(|a| a.name.is_none()))
 }
 
@@ -169,6 +173,7 @@ fn member(path: &Path, name: &Name, at: Span) -> Expr {
         index.push(crate::st::expression(inner, &place, &mut unsaid));
     }
     let path = Path { names };
-    let kind = if index.is_empty() { ExprKind::Path(path) } else { ExprKind::Element(Box::new(path), index, None) };
+    let kind =
+        if index.is_empty() { ExprKind::Path(path) } else { ExprKind::Element(Box::new(path), index, None) };
     nodes::expr(kind, at)
 }

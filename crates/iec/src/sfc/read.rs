@@ -80,7 +80,8 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         p.bump();
     }
     let Some(name) = p.name(say!("the name of the unit")) else { return };
-    let result = if kind == UnitKind::Function && p.eat(":") { p.result(&name, &mut source.types) } else { None };
+    let result =
+        if kind == UnitKind::Function && p.eat(":") { p.result(&name, &mut source.types) } else { None };
     for word in ["EXTENDS", "IMPLEMENTS"] {
         if p.at_word(word) {
             let at = p.here();

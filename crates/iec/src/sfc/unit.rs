@@ -2,7 +2,8 @@
 
 use std::ops::Range;
 
-use g7_model::{Composed, Expr, Name, Nanos, Qualifier, Span, Stmt};
+use g7_model::visit_mut::{self, Visitor};
+use g7_model::{Composed, Expr, Name, Nanos, Path, Qualifier, Span, Stmt};
 
 use crate::st::{Types, Variable};
 
@@ -97,5 +98,30 @@ pub(super) struct Instance {
 impl Unit {
     pub(super) fn is_chart(&self) -> bool {
         self.parts.iter().any(|p| matches!(p, Part::Step { .. } | Part::Transition(_)))
+    }
+}
+
+/// Visits all statements and receptivities of a unit.
+pub(super) fn each(unit: &mut Unit, v: &mut impl Visitor) {
+    visit_mut::stmts(&mut unit.body, v);
+    for part in &mut unit.parts {
+        match part {
+            Part::Action { body, .. } => visit_mut::stmts(body, v),
+            Part::Transition(t) => visit_mut::expr(&mut t.receptivity, v),
+            Part::Step { .. } => {}
+        }
+    }
+}
+
+/// A name as it is compared.
+pub(super) fn upper(name: &Name) -> String {
+    name.text.to_uppercase()
+}
+
+/// The name of the function that an expression or a statement calls, in upper case.
+pub(super) fn callee(path: &Path) -> Option<String> {
+    match path.names.as_slice() {
+        [name] => Some(upper(name)),
+        _ => None,
     }
 }

@@ -164,6 +164,10 @@ impl Parser<'_> {
                 decl.init = Some(Expr::zero(decl.ty, at));
             }
             decl.address = address.filter(|_| decl.kind != VarKind::Const);
+            if decl.kind == VarKind::Input && decl.limits.take().is_some() {
+                let what = say!("the limits of the input `{}` are not checked", name.text);
+                self.report.put(g7_model::Problem::new(&codes::LEFT_OUT, at.0, what));
+            }
             decl.retain = head.retain && decl.kind == VarKind::Var;
             decl.comment.clone_from(&comment);
             found.push(Variable { section: head.section, decl, unknown });

@@ -1,7 +1,7 @@
 //! Initial values, and declarations with them.
 
 use g7_model::codes;
-use g7_model::{Arg, Array, Expr, ExprKind, Name, Path, Place, Problem, Type, VarDecl, VarKind, say};
+use g7_model::{Arg, Array, Expr, ExprKind, Limits, Name, Path, Place, Problem, Type, VarDecl, VarKind, say};
 
 use super::lex::Kind;
 use super::parse::Parser;
@@ -151,7 +151,7 @@ pub(super) fn declared(
 ) -> (VarDecl, Option<Problem>) {
     let dimensions = if let Shape::Array(bounds, _) = shape { Some(bounds) } else { None };
     let (ty, of, default) = match element(shape) {
-        Shape::Simple(ty, default) => (*ty, None, default.clone()),
+        Shape::Simple(ty, default) | Shape::Range(ty, _, default) => (*ty, None, default.clone()),
         Shape::Enum(values, default) => {
             // An array without a list starts with zeros, so a first value of 0 needs no list.
             let first = values.first().filter(|(_, number)| dimensions.is_none() || *number != 0);
@@ -178,7 +178,12 @@ pub(super) fn declared(
             say!("the initial values of `{}` do not fit its type, or cannot be carried over", name.text);
         problem = Some(Problem::new(&codes::NOT_CARRIED, at.0, what));
     }
-    let decl = VarDecl { array, of, init: value, ..VarDecl::new(VarKind::Var, vec![name.clone()], ty, at) };
+    let limits = match element(shape) {
+        Shape::Range(_, limits, _) => Some(Box::new(Limits::Range(limits.0.clone(), limits.1.clone()))),
+        _ => None,
+    };
+    let names = vec![name.clone()];
+    let decl = VarDecl { array, of, limits, init: value, ..VarDecl::new(VarKind::Var, names, ty, at) };
     (decl, problem)
 }
 

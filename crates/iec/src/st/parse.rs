@@ -33,7 +33,18 @@ pub(crate) struct Parser<'a> {
 impl<'a> Parser<'a> {
     pub(crate) fn new(text: &'a str, place: Places<'a>, report: &'a mut Report) -> Parser<'a> {
         let Lexed { tokens, comments, foreign } = tokens(text);
-        Parser { text, tokens, comments, foreign, pos: 0, place, report, nested: 0, single: false, told: None }
+        Parser {
+            text,
+            tokens,
+            comments,
+            foreign,
+            pos: 0,
+            place,
+            report,
+            nested: 0,
+            single: false,
+            told: None,
+        }
     }
 
     /// A parser for a format whose elements of arrays become single variables.

@@ -6,8 +6,8 @@
 use std::collections::HashMap;
 
 use g7_model::{
-    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name,
-    Path, Stmt, StmtKind, Target, VarDecl, Work,
+    Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Limits,
+    Name, Path, Stmt, StmtKind, Target, VarDecl, Work,
 };
 
 /// Gives every name in a document the spelling of its declaration.
@@ -232,6 +232,10 @@ impl<'a> Settler<'a> {
         for (low, high) in decl.array.iter_mut().flat_map(|a| &mut a.dimensions) {
             self.expr(low);
             self.expr(high);
+        }
+        if let Some(Limits::Range(least, most)) = decl.limits.as_deref_mut() {
+            self.expr(least);
+            self.expr(most);
         }
         decl.init.iter_mut().for_each(|e| self.value(e, of.as_deref()));
     }

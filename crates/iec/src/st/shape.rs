@@ -8,6 +8,8 @@ use g7_model::{Composed, Expr, Name, Type};
 #[derive(Clone, Debug)]
 pub(crate) enum Shape {
     Simple(Type, Option<Expr>),
+    /// A subrange: its type, its least and greatest value, and its initial value.
+    Range(Type, Box<(Expr, Expr)>, Option<Expr>),
     /// Its values with their numbers, and its initial value.
     Enum(Vec<(Name, i128)>, Option<Expr>),
     /// A structure of the file.

@@ -1,9 +1,7 @@
 //! Reads the types of a file: elementary ones and those that it declares.
 
-use std::ops::Range;
-
 use g7_model::codes;
-use g7_model::{Composed, Name, Place, Type, VarDecl, say};
+use g7_model::{Composed, Expr, Name, Place, Type, VarDecl, say};
 
 use super::initial::{Initial, declared};
 use super::lex::Kind;
@@ -45,6 +43,7 @@ impl Parser<'_> {
             if self.eat(":=") {
                 shape = match (shape, self.initial()) {
                     (Shape::Simple(ty, _), Initial::One(init)) => Shape::Simple(ty, Some(init)),
+                    (Shape::Range(ty, limits, _), Initial::One(init)) => Shape::Range(ty, limits, Some(init)),
                     (Shape::Enum(values, _), Initial::One(init)) => Shape::Enum(values, Some(init)),
                     (other, _) => {
                         let what =
@@ -107,38 +106,27 @@ impl Parser<'_> {
             Some(Type::String(_)) => Shape::Simple(Type::String(self.length()), None),
             // Values with a type: `INT (Off := 0, Hand := 2)`.
             Some(Type::Int) if self.at("(") && self.ahead(1).kind == Kind::Word => self.enumeration(),
-            Some(ty) => {
-                self.subrange(&at);
-                // The declaration reads the direction of an input: `BOOL R_EDGE`.
-                Shape::Simple(ty, None)
-            }
+            // The declaration reads the direction of an input: `BOOL R_EDGE`.
+            Some(ty) => match self.subrange() {
+                Some(limits) => Shape::Range(ty, Box::new(limits), None),
+                None => Shape::Simple(ty, None),
+            },
             None => types.get(&name.text).cloned().unwrap_or(Shape::Unknown(name)),
         }
     }
 
-    /// `INT (0..10)`: the limits are dropped with a report.
-    fn subrange(&mut self, at: &Range<usize>) {
+    /// `(0..10)` behind a type: the least and the greatest value (IEC 61131-3:2003, 2.3.3.1).
+    fn subrange(&mut self) -> Option<(Expr, Expr)> {
         if !self.at("(") || self.ahead_is(1, ")") {
-            return;
+            return None;
         }
-        self.report.element(
-            &codes::LEFT_OUT,
-            "subrange",
-            at,
-            say!("the limits of a subrange are not checked"),
-        );
-        let mut depth = 0usize;
-        while !self.at_end() {
-            if self.at("(") {
-                depth += 1;
-            } else if self.at(")") {
-                depth -= 1;
-            }
-            self.bump();
-            if depth == 0 {
-                return;
-            }
+        self.bump();
+        let least = self.expr();
+        let limits = self.expect("..").then(|| (least, self.expr()));
+        if !self.expect(")") {
+            self.skip_to(&["END_VAR", "END_TYPE", "END_STRUCT"]);
         }
+        limits
     }
 
     /// `STRING(20)`, `STRING[20]`.

@@ -146,7 +146,9 @@ fn an_in_out_that_is_a_variable_is_copied_in_and_out() {
            x := 2 * x;
          END_FUNCTION_BLOCK ";
     let program = |body: &str| {
-        format!("{block} PROGRAM Main VAR a : INT; t : ARRAY[1..2] OF Twice; i : INT; END_VAR {body} END_PROGRAM")
+        format!(
+            "{block} PROGRAM Main VAR a : INT; t : ARRAY[1..2] OF Twice; i : INT; END_VAR {body} END_PROGRAM"
+        )
     };
     let (found, problems) = import(&program("t[i](X := a); a := t[1].x;"));
     let told: Vec<(&str, &str)> = problems.iter().map(|p| (p.code.id, &*p.what)).collect();
@@ -163,8 +165,10 @@ fn an_in_out_that_is_a_variable_is_copied_in_and_out() {
 
 #[test]
 fn what_is_not_read_is_told_at_its_place() {
-    let block = "FUNCTION_BLOCK b VAR n : INT; END_VAR {attribute 'hide'} n := n + 1; {n++;} END_FUNCTION_BLOCK ";
-    let wide = "FUNCTION f : BOOL VAR_INPUT a : INT; END_VAR VAR_OUTPUT q : INT; END_VAR f := TRUE; END_FUNCTION ";
+    let block =
+        "FUNCTION_BLOCK b VAR n : INT; END_VAR {attribute 'hide'} n := n + 1; {n++;} END_FUNCTION_BLOCK ";
+    let wide =
+        "FUNCTION f : BOOL VAR_INPUT a : INT; END_VAR VAR_OUTPUT q : INT; END_VAR f := TRUE; END_FUNCTION ";
     let cases: [(String, &str, &str); 5] = [
         (
             format!("{block} PROGRAM p VAR i : b; END_VAR i(); END_PROGRAM"),
@@ -199,7 +203,10 @@ fn what_is_not_read_is_told_at_its_place() {
     for (text, place, what) in cases {
         let (_, problems) = import(&text);
         assert_eq!(errors(&problems), [what], "{text}");
-        let at = problems.iter().find(|p| &*p.what == what).map_or(0..0, |p| p.at.start as usize..p.at.end as usize);
+        let at = problems
+            .iter()
+            .find(|p| &*p.what == what)
+            .map_or(0..0, |p| p.at.start as usize..p.at.end as usize);
         assert_eq!(text.get(at), Some(place), "{text}");
     }
     // A block that is not used may have what is not read, and a pragma without statements says nothing.
@@ -209,7 +216,9 @@ fn what_is_not_read_is_told_at_its_place() {
 
 #[test]
 fn bits_of_real_numbers_are_told() {
-    for (name, back) in [("DWORD_TO_REAL", "r := DWORD_TO_REAL(d);"), ("LREAL_TO_LWORD", "l := LREAL_TO_LWORD(x);")] {
+    for (name, back) in
+        [("DWORD_TO_REAL", "r := DWORD_TO_REAL(d);"), ("LREAL_TO_LWORD", "l := LREAL_TO_LWORD(x);")]
+    {
         let text =
             format!("PROGRAM p VAR r : REAL; d : DWORD; x : LREAL; l : LWORD; END_VAR {back} END_PROGRAM");
         let (_, problems) = import(&text);

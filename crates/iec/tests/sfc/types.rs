@@ -31,6 +31,8 @@ PROGRAM p
     full : ARRAY[0..4] OF Level;
     own : STRUCT a : BOOL; b : INT; END_STRUCT;
     i : INT;
+    share : Percent := 4;
+    near : ARRAY[0..1] OF UINT(LAST..7);
   END_VAR
   INITIAL_STEP Wait: END_STEP
   STEP Work: Turn(N); END_STEP
@@ -48,7 +50,7 @@ PROGRAM p
 END_PROGRAM";
     let (document, problems) = import(text);
     let told: Vec<_> = problems.iter().map(|p| (p.code.id, &*p.what)).collect();
-    assert_eq!(told, [("G0605", "the limits of a subrange are not checked")]);
+    assert_eq!(told, []);
     same(
         &document,
         "profile iec61131
@@ -74,6 +76,8 @@ END_PROGRAM";
          var full : ARRAY[0..4] OF INT := [5(9)]
          var own : own_type
          var i : INT
+         var share : INT(0..100) := 4
+         var near : ARRAY[0..1] OF UINT(last..7)
          chart p {
            initial step Wait
            step `Work` { N Turn }
@@ -91,6 +95,24 @@ END_PROGRAM";
          }",
     );
     assert_eq!(errors(&compile(&document).1), <[&str; 0]>::default());
+}
+
+#[test]
+fn limits_that_no_variable_has_are_told() {
+    let (document, problems) = import(
+        "TYPE Share : INT (0..100) := 5; END_TYPE
+         FUNCTION f : Share VAR_INPUT a : Share; END_VAR VAR b : Share; END_VAR f := a + b; END_FUNCTION
+         PROGRAM p VAR_INPUT i : Share; END_VAR VAR_OUTPUT o : Share; END_VAR o := f(i); END_PROGRAM",
+    );
+    let told: Vec<_> = problems.iter().map(|p| &*p.what).collect();
+    let wanted = [
+        "the limits of the input `a` are not checked",
+        "the limits of the input `i` are not checked",
+        "the limits of the local variable `b` are not checked",
+        "the limits of the result of `f` are not checked",
+    ];
+    assert!(wanted.iter().all(|w| told.contains(w)) && told.len() == wanted.len(), "{told:?}");
+    assert!(g7_syntax::print(&document, None).contains("output o : INT(0..100) := 5"));
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
-    Block, Composed, Expr, ExprKind, Literal, Local, Name, Path, Place, Problem, Span, Stmt, StmtKind, Type, UnaryOp,
-    codes, say,
+    Block, Composed, Expr, ExprKind, Literal, Local, Name, Path, Place, Problem, Span, Stmt, StmtKind, Type,
+    UnaryOp, codes, say,
 };
 
 /// The most statements that a body may have when the statements behind a RETURN are put aside.
