@@ -140,13 +140,9 @@ pub(super) fn no_type(source: &Source, ty: &Name) -> Said {
 
 /// Reports statements of another language in a unit that is carried over.
 pub(super) fn foreign(unit: &Unit, report: &mut Report) {
-    if let Some(at) = unit.foreign {
-        let what = say!(
-            "`{}` has statements in a pragma, in C or another language; they are not read",
-            unit.name.text
-        );
-        report.put(Problem::new(&codes::NOT_CARRIED, at, what));
-    }
+    unit.foreign
+        .iter()
+        .for_each(|at| report.put(Problem::new(&codes::NOT_CARRIED, *at, crate::st::foreign())));
 }
 
 /// Reports actions of a unit without steps, because nothing runs them.

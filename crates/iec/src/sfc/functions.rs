@@ -14,12 +14,12 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    Arg, Expr, ExprKind, FbKind, Name, Nanos, Path, Problem, Span, Stmt, Type, UnaryOp, VarDecl, VarKind,
-    codes, say,
+    Arg, Expr, ExprKind, FbKind, Name, Nanos, Path, Problem, Span, Stmt, StmtKind, Type, UnaryOp, VarDecl,
+    VarKind, codes, say,
 };
 
 use super::called;
-use super::unit::{Source, Unit, UnitKind, callee, each, upper};
+use super::unit::{Renamed, Source, Unit, UnitKind, callee, each, upper};
 use crate::nodes::{self, Taken};
 use crate::report::Report;
 use crate::st::{Section, Variable};
@@ -124,7 +124,7 @@ impl Visitor for Omitted<'_> {
     }
 
     fn stmt(&mut self, stmt: &mut Stmt) {
-        if let g7_model::StmtKind::Call(path, args) = &mut stmt.kind {
+        if let StmtKind::Call(path, args) = &mut stmt.kind {
             self.complete(path, args);
         }
     }
@@ -170,18 +170,6 @@ impl Visitor for Written {
     }
 }
 
-struct Renamed<'n>(&'n HashMap<String, String>);
-
-impl Visitor for Renamed<'_> {
-    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
-        let Some(first) = path.names.first_mut() else { return };
-        let (bare, index) = first.text.split_at(first.text.find('[').unwrap_or(first.text.len()));
-        if let Some(own) = self.0.get(&bare.to_uppercase()) {
-            first.text = format!("{own}{index}").into();
-        }
-    }
-}
-
 /// The functions that become function blocks, in upper case: those with a wide variable, and those that call one.
 fn wide(source: &Source) -> HashSet<String> {
     let functions = || source.units.iter().filter(|u| u.kind == UnitKind::Function);
@@ -191,41 +179,36 @@ fn wide(source: &Source) -> HashSet<String> {
         u.result.as_ref().is_some_and(|r| of_type(&r.decl))
             || u.vars.iter().any(|v| of_type(&v.decl) || outward(v))
     };
-    let mut wide: HashSet<String> = functions().filter(is_wide).map(|u| upper(&u.name)).collect();
-    loop {
-        let calls = |u: &&Unit| {
-            let mut calls = Calls { wide: &wide, found: false };
-            visit_mut::stmts(&mut u.body.clone(), &mut calls);
-            calls.found
-        };
-        let more: Vec<String> = functions()
-            .filter(|u| !wide.contains(&upper(&u.name)))
-            .filter(calls)
-            .map(|u| upper(&u.name))
-            .collect();
-        if wide.is_empty() || more.is_empty() {
-            return wide;
-        }
-        wide.extend(more);
+    let mut open: Vec<String> = functions().filter(is_wide).map(|u| upper(&u.name)).collect();
+    let mut callers: HashMap<String, Vec<String>> = HashMap::new();
+    for unit in functions().filter(|_| !open.is_empty()) {
+        let mut calls = Calls::default();
+        visit_mut::stmts(&mut unit.body.clone(), &mut calls);
+        calls.0.into_iter().for_each(|called| callers.entry(called).or_default().push(upper(&unit.name)));
     }
+    let mut wide = HashSet::new();
+    while let Some(name) = open.pop() {
+        if wide.insert(name.clone()) {
+            open.extend(callers.remove(&name).unwrap_or_default());
+        }
+    }
+    wide
 }
 
-/// Looks for calls of some functions.
-struct Calls<'w> {
-    wide: &'w HashSet<String>,
-    found: bool,
-}
+/// The functions that are called, in upper case.
+#[derive(Default)]
+struct Calls(HashSet<String>);
 
-impl Visitor for Calls<'_> {
+impl Visitor for Calls {
     fn expr(&mut self, e: &mut Expr) {
         if let ExprKind::Call(path, _) = &e.kind {
-            self.found |= callee(path).is_some_and(|n| self.wide.contains(&n));
+            self.0.extend(callee(path));
         }
     }
 
     fn stmt(&mut self, stmt: &mut Stmt) {
-        if let g7_model::StmtKind::Call(path, _) = &stmt.kind {
-            self.found |= callee(path).is_some_and(|n| self.wide.contains(&n));
+        if let StmtKind::Call(path, _) = &stmt.kind {
+            self.0.extend(callee(path));
         }
     }
 }

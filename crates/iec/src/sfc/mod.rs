@@ -3,7 +3,7 @@
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> st (lexer, parser) -> read (units) -> enabled, functions, inouts, instances, blocks -> build (Document)
+//! bytes -> st (lexer, parser) -> read (units) -> resources, enabled, functions, inouts, instances, blocks -> build (Document)
 //!                                                                                      -> st::settle
 //! Document -> write -> text
 //! ```
@@ -25,6 +25,7 @@ mod functions;
 mod inouts;
 mod instances;
 mod read;
+mod resources;
 mod singles;
 mod unit;
 mod write;
@@ -88,6 +89,7 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     let place = |r| r;
     let mut parser = Parser::new(text, &place, &mut report);
     let mut source = read::source(&mut parser);
+    resources::expand(&mut source, &mut report);
     if source.units.is_empty() && source.globals.is_empty() {
         let what = say!("no PROGRAM, FUNCTION_BLOCK, FUNCTION or CONFIGURATION stands in this file");
         let end = text.len().min(1);

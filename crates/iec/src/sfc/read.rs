@@ -3,7 +3,7 @@
 use g7_model::codes;
 use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt, StmtKind, say};
 
-use super::unit::{Association, Instance, Part, Source, Task, Transition, Unit, UnitKind};
+use super::unit::{Association, Instance, Part, Resource, Source, Task, Transition, Unit, UnitKind};
 use crate::st::{Kind, Parser};
 use crate::words::closes;
 
@@ -384,7 +384,7 @@ fn configuration(p: &mut Parser, source: &mut Source) {
     p.name(say!("the name of the configuration"));
     while !p.at_end() && !p.at_word("END_CONFIGURATION") {
         let before = p.mark();
-        if !inside(p, source) || p.mark() == before {
+        if !inside(p, source, false) || p.mark() == before {
             p.expected(say!("a resource, a task, a program or `END_CONFIGURATION`"));
             p.skip_to(&["END_CONFIGURATION"]);
         }
@@ -394,12 +394,13 @@ fn configuration(p: &mut Parser, source: &mut Source) {
 }
 
 /// Reads an element of a configuration.
-fn inside(p: &mut Parser, source: &mut Source) -> bool {
+fn inside(p: &mut Parser, source: &mut Source, in_resource: bool) -> bool {
     if p.declarations(&mut source.types, &mut source.globals) {
         return true;
     }
     match p.word().as_str() {
-        "RESOURCE" => resource(p, source),
+        // A resource has none within it.
+        "RESOURCE" if !in_resource => resource(p, source),
         "TASK" => task(p, source),
         "PROGRAM" => instance(p, source),
         _ => return false,
@@ -409,13 +410,15 @@ fn inside(p: &mut Parser, source: &mut Source) -> bool {
 
 fn resource(p: &mut Parser, source: &mut Source) {
     p.bump();
-    p.name(say!("the name of the resource"));
+    let at = p.span_of(p.token());
+    let name = p.name(say!("the name of the resource")).unwrap_or_else(|| Name::new("Resource", at));
     if p.eat_word("ON") {
         p.name(say!("the type of the resource"));
     }
+    let mut own = Source { types: std::mem::take(&mut source.types), ..Source::default() };
     while !p.at_end() && !p.at_word("END_RESOURCE") {
         let before = p.mark();
-        if !inside(p, source) || p.mark() == before {
+        if !inside(p, &mut own, true) || p.mark() == before {
             p.expected(say!("a task, a program or `END_RESOURCE`"));
             p.skip_to(&["END_RESOURCE", "END_CONFIGURATION"]);
             break;
@@ -423,6 +426,13 @@ fn resource(p: &mut Parser, source: &mut Source) {
     }
     p.expect_word("END_RESOURCE");
     p.eat(";");
+    source.types = own.types;
+    source.resources.push(Resource {
+        name,
+        globals: own.globals,
+        tasks: own.tasks,
+        instances: own.instances,
+    });
 }
 
 /// `TASK fast(INTERVAL := T#10ms, PRIORITY := 1);`.

@@ -1,8 +1,9 @@
 //! The content of a file before it becomes a document.
 
+use std::collections::HashMap;
 use std::ops::Range;
 
-use g7_model::visit_mut::{self, Visitor};
+use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{Composed, Expr, Name, Nanos, Path, Qualifier, Span, Stmt};
 
 use crate::st::{Types, Variable};
@@ -14,6 +15,7 @@ pub(super) struct Source {
     pub(super) globals: Vec<Variable>,
     pub(super) tasks: Vec<Task>,
     pub(super) instances: Vec<Instance>,
+    pub(super) resources: Vec<Resource>,
     pub(super) types: Types,
     /// The function blocks without a chart that are used.
     pub(super) blocks: Vec<Composed>,
@@ -77,6 +79,15 @@ pub(super) struct Association {
     pub(super) at: Span,
 }
 
+/// A resource of a configuration, with what it has of its own.
+#[derive(Debug)]
+pub(super) struct Resource {
+    pub(super) name: Name,
+    pub(super) globals: Vec<Variable>,
+    pub(super) tasks: Vec<Task>,
+    pub(super) instances: Vec<Instance>,
+}
+
 /// A task of a resource.
 #[derive(Debug)]
 pub(super) struct Task {
@@ -109,6 +120,19 @@ pub(super) fn each(unit: &mut Unit, v: &mut impl Visitor) {
             Part::Action { body, .. } => visit_mut::stmts(body, v),
             Part::Transition(t) => visit_mut::expr(&mut t.receptivity, v),
             Part::Step { .. } => {}
+        }
+    }
+}
+
+/// Renames variables; the old names are in upper case.
+pub(super) struct Renamed<'n>(pub(super) &'n HashMap<String, String>);
+
+impl Visitor for Renamed<'_> {
+    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+        let Some(first) = path.names.first_mut() else { return };
+        let (bare, index) = first.text.split_at(first.text.find('[').unwrap_or(first.text.len()));
+        if let Some(own) = self.0.get(&bare.to_uppercase()) {
+            first.text = format!("{own}{index}").into();
         }
     }
 }

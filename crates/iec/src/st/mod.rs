@@ -47,6 +47,11 @@ pub(crate) use shape::Types;
 pub(crate) use types::MOST_DIMENSIONS;
 pub use types::elementary;
 
+/// Told of a pragma with statements of another language.
+pub(crate) fn foreign() -> g7_model::Said {
+    g7_model::say!("statements in a pragma, in C or another language, are not read")
+}
+
 /// Reads statements of Structured Text; the text must end behind them.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {
     Parser::new(text, place, report).body()

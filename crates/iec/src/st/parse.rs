@@ -56,6 +56,9 @@ impl<'a> Parser<'a> {
     pub(super) fn body(mut self) -> Vec<Stmt> {
         let statements = self.statements();
         self.expect_end();
+        if let Some(at) = self.foreign(0) {
+            self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, super::foreign()));
+        }
         statements
     }
 

@@ -173,12 +173,12 @@ fn what_is_not_read_is_told_at_its_place() {
         (
             format!("{block} PROGRAM p VAR i : b; END_VAR i(); END_PROGRAM"),
             "{n++;}",
-            "`b` has statements in a pragma, in C or another language; they are not read",
+            "statements in a pragma, in C or another language, are not read",
         ),
         (
             "PROGRAM p VAR n : INT; END_VAR n := 1; {{ if (n) { n = 2; } }} END_PROGRAM".into(),
             "{{ if (n) { n = 2; } }}",
-            "`p` has statements in a pragma, in C or another language; they are not read",
+            "statements in a pragma, in C or another language, are not read",
         ),
         (
             "PROGRAM p VAR a : BOOL; n : INT; END_VAR n := ABS(IN := n, EN := a); END_PROGRAM".into(),
@@ -212,6 +212,25 @@ fn what_is_not_read_is_told_at_its_place() {
     // A block that is not used may have what is not read, and a pragma without statements says nothing.
     let unused = format!("{block} PROGRAM p VAR n : INT; END_VAR {{attribute 'x'}} n := 1; END_PROGRAM");
     assert_eq!(errors(&import(&unused).1), Vec::<&str>::new());
+}
+
+#[test]
+fn many_functions_that_call_each_other_are_read_in_time() {
+    let mut text =
+        String::from("FUNCTION f0 : INT VAR_IN_OUT a : INT; END_VAR a := a + 1; f0 := a; END_FUNCTION\n");
+    for n in 1..3000 {
+        let before = n - 1;
+        text +=
+            &format!("FUNCTION f{n} : INT VAR_IN_OUT a : INT; END_VAR f{n} := f{before}(a); END_FUNCTION\n");
+    }
+    text += "PROGRAM p VAR n : INT; m : INT; END_VAR m := f2999(n); END_PROGRAM";
+    let start = std::time::Instant::now();
+    let (document, problems) = import(&text);
+    assert_eq!(problems, []);
+    let (_, problems) = g7_compile::compile(&document);
+    let told: Vec<&str> = errors(&problems);
+    assert_eq!(told, ["types stand in each other at most 64 deep"]);
+    assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
 #[test]

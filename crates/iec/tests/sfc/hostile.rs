@@ -22,6 +22,8 @@ fn brackets_and_blocks_without_end() {
         quickly(&format!("PROGRAM p x := {all}"));
         quickly(&format!("PROGRAM p {all}"));
     }
+    quickly(&"RESOURCE r ON PLC ".repeat(50_000));
+    quickly(&format!("CONFIGURATION c {}", "RESOURCE r ON PLC ".repeat(50_000)));
 }
 
 #[test]
@@ -46,6 +48,8 @@ proptest! {
         "TRANSITION", "FROM", "TO", "END_TRANSITION", "ACTION", "END_ACTION", "IF", "THEN", "END_IF", "CASE", "OF",
         "LD", "ST", "JMP", "1", "..", "T#5s", "%IX0.0", "AT", ",", "[", "]", "ARRAY", "STRUCT", "TYPE", "'", "\n",
         "CONFIGURATION", "TASK", "RESOURCE", "END_PROGRAM", "FUNCTION", "INT", "N", "PRIORITY", "16#", "INT#",
+        "END_FUNCTION", "VAR_IN_OUT", "VAR_OUTPUT", "VAR_INPUT", "VAR_EXTERNAL", "WHILE a DO", "END_WHILE", "ELSIF", "TIME()",
+        "{ a; }", "f(p)", "f(p := 1)", "RETURN", "END_RESOURCE", "f : INT", "EN := TRUE", "INT (0..9)", "p.f",
     ]), 0..80)) {
         let text = words.join(" ");
         let (document, _) = import(&text);

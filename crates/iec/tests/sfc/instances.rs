@@ -115,3 +115,38 @@ fn a_global_instance_belongs_to_the_program_that_uses_it() {
     assert_eq!(told(&problems), []);
     assert!(g7_syntax::print(&found, None).contains("chart fb {"), "{}", g7_syntax::print(&found, None));
 }
+
+#[test]
+fn resources_have_tasks_and_variables_of_their_own() {
+    let text = "
+        PROGRAM A VAR_EXTERNAL x, g : INT; END_VAR x := x + g; END_PROGRAM
+        PROGRAM B VAR_EXTERNAL X : INT; END_VAR VAR g : INT; END_VAR g := x + 1; X := g; END_PROGRAM
+        CONFIGURATION c
+          VAR_GLOBAL g : INT := 3; END_VAR
+          RESOURCE r1 ON PLC
+            VAR_GLOBAL x : INT; END_VAR
+            TASK t(INTERVAL := T#10ms, PRIORITY := 0);
+            PROGRAM pa WITH T : A;
+          END_RESOURCE
+          RESOURCE r2 ON PLC
+            VAR_GLOBAL x : INT := 7; g : INT; END_VAR
+            TASK t(INTERVAL := T#20ms, PRIORITY := 0);
+            PROGRAM pb WITH t : B;
+          END_RESOURCE
+        END_CONFIGURATION";
+    let (found, problems) = import(text.as_bytes(), FileId(0));
+    let what = "the programs of all resources run in one controller here, one behind the other";
+    assert_eq!(told(&problems), [("G0614", what)]);
+    let wanted = "profile iec61131
+        scan 10ms
+        var g : INT := 3  var x : INT  var r2_x : INT := 7  var r2_g : INT
+        pre { x := x + g }
+        chart B every 20ms { var g : INT  pre { g := r2_x + 1  r2_x := g } }";
+    let (wanted, wrong) = g7_syntax::parse(wanted, FileId(0));
+    assert_eq!(wrong, []);
+    assert_eq!(g7_syntax::print(&found, None), g7_syntax::print(&wanted, None));
+    let block = "FUNCTION_BLOCK f VAR_EXTERNAL x : INT; END_VAR x := 1; END_FUNCTION_BLOCK PROGRAM C VAR b : f; END_VAR b(); END_PROGRAM";
+    let (_, problems) = import(format!("{block}{text}").as_bytes(), FileId(0));
+    let what = "`x` is a variable of several resources; a function block can name one of them alone";
+    assert!(told(&problems).contains(&("G0604", what)), "{:?}", told(&problems));
+}

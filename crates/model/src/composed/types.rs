@@ -81,8 +81,7 @@ impl<'d> Composition<'d> {
             return DEEP;
         }
         if way.len() >= DEEP {
-            let what = say!("types stand in each other at most {DEEP} deep");
-            self.problems.push(Problem::new(&codes::TOO_DEEP, c.name.at.0, what));
+            self.too_deep(c);
             return DEEP;
         }
         way.push(c);
@@ -98,9 +97,18 @@ impl<'d> Composition<'d> {
         if c.block || c.members.iter().any(held) {
             self.blocks.insert(name);
         }
+        // Types that stand before those that have variables of them are not on one way.
+        if deepest == Some(DEEP - 1) {
+            self.too_deep(c);
+        }
         let depth = deepest.map_or(0, |d| d + 1).min(DEEP);
         depths.insert(name, depth);
         depth
+    }
+
+    fn too_deep(&mut self, c: &Composed) {
+        let what = say!("types stand in each other at most {DEEP} deep");
+        self.problems.push(Problem::new(&codes::TOO_DEEP, c.name.at.0, what));
     }
 
     /// Reports a name that is no type.
