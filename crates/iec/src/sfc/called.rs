@@ -18,6 +18,10 @@ use crate::nodes::{self, Taken};
 use crate::report::Report;
 use crate::st::{Section, Variable};
 
+/// The most conditions of ELSIF with such a call in a unit: each is an IF within the one before it, and later stages
+/// recurse over these.
+const MOST_ELSIF: usize = 100;
+
 /// The parameters of each function in the order of a call without names, and its own name.
 type Parameters = HashMap<String, (Name, Vec<(Name, Section)>)>;
 
@@ -38,6 +42,7 @@ pub(super) fn expand(source: &mut Source, wide: &HashSet<String>, report: &mut R
             report,
             made: Vec::new(),
             before: Vec::new(),
+            room: Some(MOST_ELSIF),
         };
         unit.body = calls.list(std::mem::take(&mut unit.body));
         for part in &mut unit.parts {
@@ -75,6 +80,8 @@ struct Calls<'a> {
     made: Vec<Variable>,
     /// The calls before the statement that is rewritten.
     before: Vec<Stmt>,
+    /// How many IFs can still be put into an ELSE; None behind the report that they are too many.
+    room: Option<usize>,
 }
 
 impl Calls<'_> {
@@ -149,22 +156,33 @@ impl Calls<'_> {
     /// The arms of an IF: calls in the condition of a later arm run where the earlier ones did not hold.
     fn arms(&mut self, arms: &mut Vec<(Expr, Vec<Stmt>)>, otherwise: &mut Vec<Stmt>, at: Span) {
         *otherwise = self.list(std::mem::take(otherwise));
+        // The last arm first.
         let mut kept = Vec::new();
         for (number, (mut condition, body)) in std::mem::take(arms).into_iter().enumerate().rev() {
             let before = self.within(&mut condition);
-            let body = self.list(body);
-            kept.insert(0, (condition, body));
+            let place = condition.at.0;
+            kept.push((condition, self.list(body)));
             if before.is_empty() {
                 continue;
             }
             if number == 0 {
                 self.before.extend(before);
-            } else {
-                let rest = std::mem::take(otherwise);
-                let inner = Stmt { kind: StmtKind::If(std::mem::take(&mut kept), rest), at: at.into() };
-                *otherwise = before.into_iter().chain([inner]).collect();
+                continue;
             }
+            let Some(room) = self.room else { continue };
+            self.room = room.checked_sub(1);
+            if self.room.is_none() {
+                let what =
+                    say!("more than {MOST_ELSIF} calls of functions with outputs in conditions of ELSIF");
+                self.report.put(Problem::new(&codes::TOO_DEEP, place, what));
+                continue;
+            }
+            kept.reverse();
+            let rest = std::mem::take(otherwise);
+            let inner = Stmt { kind: StmtKind::If(std::mem::take(&mut kept), rest), at: at.into() };
+            *otherwise = before.into_iter().chain([inner]).collect();
         }
+        kept.reverse();
         *arms = kept;
     }
 

@@ -230,6 +230,18 @@ fn many_functions_that_call_each_other_are_read_in_time() {
     let (_, problems) = g7_compile::compile(&document);
     let told: Vec<&str> = errors(&problems);
     assert_eq!(told, ["types stand in each other at most 64 deep"]);
+    let program = |arms: usize| {
+        let more = "ELSIF f0(n) > 5 THEN m := 2; ".repeat(arms);
+        let first = text.lines().next().unwrap_or("");
+        format!(
+            "{first} PROGRAM p VAR n : INT; m : INT; END_VAR IF n > 1 THEN m := 1; {more} END_IF; END_PROGRAM"
+        )
+    };
+    assert_eq!(errors(&import(&program(100)).1), <[&str; 0]>::default());
+    let (document, problems) = import(&program(20_000));
+    let what = "more than 100 calls of functions with outputs in conditions of ELSIF";
+    assert_eq!(errors(&problems), [what]);
+    let _ = g7_compile::compile(&document);
     assert!(start.elapsed().as_secs() < 20, "{:?}", start.elapsed());
 }
 
