@@ -39,18 +39,13 @@ pub type Spelling<'a> = &'a dyn Fn(&Expr) -> String;
 pub(crate) use decl::{Section, Variable};
 pub(crate) use initial::repeat;
 pub(crate) use lex::Kind;
-pub(crate) use parse::Parser;
 pub use parse::Places;
+pub(crate) use parse::{Parser, foreign};
 pub use print::{Types as Known, Writer};
 pub use settle::settle;
 pub(crate) use shape::Types;
 pub(crate) use types::MOST_DIMENSIONS;
 pub use types::elementary;
-
-/// Told of a pragma with statements of another language.
-pub(crate) fn foreign() -> g7_model::Said {
-    g7_model::say!("statements in a pragma, in C or another language, are not read")
-}
 
 /// Reads statements of Structured Text; the text must end behind them.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {

@@ -14,6 +14,11 @@ const MOST_NESTED: u32 = 100;
 /// Maps a range of bytes of the text to its place in the file.
 pub type Places<'a> = &'a dyn Fn(Range<usize>) -> Range<usize>;
 
+/// Told of a pragma with statements of another language.
+pub(crate) fn foreign() -> Said {
+    say!("statements in a pragma, in C or another language, are not read")
+}
+
 /// A parser of IEC 61131-3 text.
 pub(crate) struct Parser<'a> {
     pub(crate) text: &'a str,
@@ -57,7 +62,7 @@ impl<'a> Parser<'a> {
         let statements = self.statements();
         self.expect_end();
         if let Some(at) = self.foreign(0) {
-            self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, super::foreign()));
+            self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, foreign()));
         }
         statements
     }
