@@ -164,6 +164,32 @@ impl Body {
             Body::St(block) | Body::Other(_, _, block) => block,
         }
     }
+
+    /// The same, to be changed. The text of another language stays as it is.
+    pub fn block_mut(&mut self) -> &mut Block {
+        match self {
+            Body::St(block) | Body::Other(_, _, block) => block,
+        }
+    }
+}
+
+impl Stmt {
+    /// The lists of statements within this one, one level down.
+    pub fn lists(&self) -> Vec<&[Stmt]> {
+        match &self.kind {
+            StmtKind::If(arms, otherwise) => arms.iter().map(|a| &*a.1).chain([&**otherwise]).collect(),
+            StmtKind::Case(_, arms, otherwise) => {
+                arms.iter().map(|a| &*a.body).chain([&**otherwise]).collect()
+            }
+            StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => vec![body],
+            StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit | StmtKind::Return => Vec::new(),
+        }
+    }
+
+    /// True for a loop.
+    pub fn is_loop(&self) -> bool {
+        matches!(self.kind, StmtKind::For { .. } | StmtKind::While(..) | StmtKind::Repeat(..))
+    }
 }
 
 /// A statement of Structured Text.

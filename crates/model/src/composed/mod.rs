@@ -28,7 +28,7 @@ mod walk;
 
 use std::borrow::Cow;
 
-use crate::{Body, Composed, Document, Item, Problem};
+use crate::{Composed, Document, Item, Problem};
 
 pub use base::Composition;
 pub use types::DEEP;
@@ -58,13 +58,14 @@ fn without_locals(document: &Document) -> Cow<'_, Document> {
     let mut own = document.clone();
     for item in &mut own.items {
         let Item::Composed(of) = item else { continue };
-        let Some(Body::St(mut block)) = of.body.take_if(|b| matches!(b, Body::St(_))) else { continue };
-        returns::out_of_loops(of, &mut block);
+        let Some(mut body) = of.body.take() else { continue };
+        let block = body.block_mut();
+        returns::out_of_loops(of, block);
         let locals = std::mem::take(&mut block.locals);
         of.members.extend(locals.iter().map(declare::local_member));
         let values = locals.iter().flat_map(declare::local_values).collect::<Vec<_>>();
         block.statements.splice(0..0, values);
-        of.body = Some(Body::St(block));
+        of.body = Some(body);
     }
     Cow::Owned(own)
 }

@@ -20,27 +20,11 @@ pub(super) fn without(list: Vec<Stmt>) -> Result<Vec<Stmt>, Problem> {
 
 /// True if a RETURN stands somewhere in a statement.
 fn returns(s: &Stmt) -> bool {
-    at_return(s).is_some()
+    s.kind == StmtKind::Return || s.lists().into_iter().flatten().any(returns)
 }
 
-/// The place of the first RETURN in a statement.
-fn at_return(s: &Stmt) -> Option<Span> {
-    let within = |list: &[Stmt]| list.iter().find_map(at_return);
-    match &s.kind {
-        StmtKind::Return => Some(s.at.0),
-        StmtKind::If(arms, otherwise) => {
-            arms.iter().find_map(|(_, body)| within(body)).or_else(|| within(otherwise))
-        }
-        StmtKind::Case(_, arms, otherwise) => {
-            arms.iter().find_map(|a| within(&a.body)).or_else(|| within(otherwise))
-        }
-        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => within(body),
-        StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit => None,
-    }
-}
-
-/// Puts each RETURN out of the loops of a body: it sets a local variable and leaves the loop, and behind the loop that
-/// variable is asked.
+/// Replaces each RETURN in a loop of a body: it sets a local variable and leaves the loop by EXIT; the statement behind
+/// the loop returns if the variable is set.
 pub(super) fn out_of_loops(of: &Composed, block: &mut Block) {
     if !in_loops(&block.statements) {
         return;
@@ -63,24 +47,14 @@ pub(super) fn in_loops(list: &[Stmt]) -> bool {
 }
 
 fn in_loop(s: &Stmt) -> bool {
-    match &s.kind {
-        _ if is_loop(s) => returns(s),
-        StmtKind::If(arms, otherwise) => arms.iter().flat_map(|a| &a.1).chain(otherwise).any(in_loop),
-        StmtKind::Case(_, arms, otherwise) => arms.iter().flat_map(|a| &a.body).chain(otherwise).any(in_loop),
-        _ => false,
-    }
+    if s.is_loop() { returns(s) } else { s.lists().into_iter().any(in_loops) }
 }
 
-/// True for a loop.
-fn is_loop(s: &Stmt) -> bool {
-    matches!(s.kind, StmtKind::For { .. } | StmtKind::While(..) | StmtKind::Repeat(..))
-}
-
-/// Rewrites the loops of a list that stands in none.
+/// Replaces the RETURNs in the loops of a list of statements that does not stand in a loop itself.
 fn outside(list: &mut Vec<Stmt>, flag: &Name) {
     for mut s in std::mem::take(list) {
         let mut asked = false;
-        if is_loop(&s) {
+        if s.is_loop() {
             visit_mut::lists(&mut s, |body| asked = inside(body, flag));
         } else {
             visit_mut::lists(&mut s, |body| outside(body, flag));
@@ -93,11 +67,11 @@ fn outside(list: &mut Vec<Stmt>, flag: &Name) {
     }
 }
 
-/// Rewrites the body of a loop. Returns true if it had a RETURN.
+/// Replaces the RETURNs in the body of a loop. The result is true if there were any.
 fn inside(list: &mut Vec<Stmt>, flag: &Name) -> bool {
     let mut any = false;
     for mut s in std::mem::take(list) {
-        let (at, inner) = (s.at, is_loop(&s));
+        let (at, inner) = (s.at, s.is_loop());
         let mut had = false;
         visit_mut::lists(&mut s, |body| had |= inside(body, flag));
         if s.kind == StmtKind::Return {
@@ -149,7 +123,7 @@ fn before(mut list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {
             StmtKind::Case(selector, arms, arm(otherwise)?)
         }
         kind => {
-            // A loop has none any more, see `out_of_loops`.
+            // `out_of_loops` leaves no RETURN in a loop.
             list.push(Stmt { kind, at });
             list.extend(rest);
             return taken(list, room);
