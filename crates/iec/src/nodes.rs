@@ -82,6 +82,11 @@ impl Taken {
     }
 }
 
+/// A name without the index that it may have, and the index.
+pub(crate) fn bare(name: &str) -> (&str, &str) {
+    name.split_at(name.find('[').unwrap_or(name.len()))
+}
+
 /// An expression at a place.
 pub fn expr(kind: ExprKind, at: Span) -> Expr {
     Expr { kind, at: at.into() }

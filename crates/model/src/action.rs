@@ -186,6 +186,11 @@ impl Stmt {
         }
     }
 
+    /// True for RETURN, and for a statement with one within it.
+    pub fn returns(&self) -> bool {
+        self.kind == StmtKind::Return || self.lists().into_iter().flatten().any(Stmt::returns)
+    }
+
     /// True for a loop.
     pub fn is_loop(&self) -> bool {
         matches!(self.kind, StmtKind::For { .. } | StmtKind::While(..) | StmtKind::Repeat(..))

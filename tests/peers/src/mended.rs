@@ -2,12 +2,15 @@
 
 use std::path::Path;
 
-/// A copy of matiec's C library in which what contradicts IEC 61131-3 is mended. Counters end at PV
-/// and at 0 there; table 36 has them end at PVmax and PVmin. The sum of two TIMEs is wrong where the
-/// parts of a second make exactly one. Numbers become a TIME or TOD, and these numbers, in milliseconds instead of
-/// seconds: the standard leaves the unit open, and CODESYS, TwinCAT and G7 have milliseconds. A shift by the width of
-/// its bits and more, which C leaves open, gives no bits, and LIMIT is MIN(MAX(IN, MN), MX) (table 27) where MN is
-/// greater than MX. The product of a TIME has more nanoseconds than an int holds.
+/// Copies matiec's C library and changes it where it contradicts IEC 61131-3:2003, or has another unit than G7:
+///
+/// - Counters count to PVmin and PVmax (table 36), not to 0 and PV.
+/// - The sum of two TIMEs is right where the parts of a second make exactly one; the product of a TIME is computed in a
+///   type that holds its nanoseconds.
+/// - A TIME or TOD is converted to a number, and a number to it, in milliseconds, as in CODESYS, TwinCAT and G7. matiec
+///   has seconds; the standard leaves the unit open.
+/// - A shift by as many bits as the type has, or more, gives 0. C leaves the result open.
+/// - LIMIT is MIN(MAX(IN, MN), MX) (table 27), also where MN is greater than MX.
 ///
 /// # Errors
 ///
@@ -40,8 +43,8 @@ pub fn mended(from: &Path, to: &Path) -> std::io::Result<()> {
     Ok(())
 }
 
-/// The C of a program in which a FOR loop whose first value is its last one runs once (2003, 3.3.2.4): matiec compares
-/// before it counts, and leaves such a loop out.
+/// Changes the C that matiec made of a program: a FOR loop from a value to the same value runs once (IEC 61131-3:2003,
+/// 3.3.2.4). In the C of matiec it does not run.
 pub fn loops(text: &str) -> String {
     let mut mended = String::new();
     let mut counts = false;

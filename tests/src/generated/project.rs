@@ -321,8 +321,8 @@ pub struct Built {
 }
 
 impl Built {
-    /// Compiles the C that matiec has put into a folder, with more flags of gcc. Of its variables and steps it has
-    /// those that are wanted.
+    /// Compiles the C that matiec has put into a folder. `flags` are further options of gcc. Only the variables and steps
+    /// whose name is `wanted` can be set and are seen.
     ///
     /// # Errors
     ///

@@ -83,7 +83,8 @@ pub(super) fn charts_within<'d>(doc: &'d Document, made: &Made<'d>) -> Run<Vec<M
 }
 
 impl Model {
-    /// The variable of the instance that its chart names without a path: `left.close` for `close`, with its scope.
+    /// The meaning of a name in the chart of an instance, if it is a variable of the instance: in the chart of `left`,
+    /// `close` means `left.close`. Returns the scope that declares the instance, and the path from there.
     pub(super) fn of_block(&self, scope: ScopeId, names: &[&str]) -> Option<(ScopeId, Vec<String>)> {
         let home = self.scopes[scope].home.as_ref()?;
         let (first, rest) = names.split_first()?;

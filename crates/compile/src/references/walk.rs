@@ -79,7 +79,7 @@ struct Walk<'u, 'd> {
     types: Types<'d>,
     /// The function block whose body is being walked; its names hide all others.
     within: Option<&'d Composed>,
-    /// The function block to which the chart in hand belongs.
+    /// The function block of the chart that is being walked, if it is a chart of a function block.
     block: Option<&'d Composed>,
     locals: Vec<HashSet<&'d str>>,
     /// The plant that is being walked, and its names; they hide those of the charts.

@@ -508,24 +508,7 @@ pub(super) fn resolve_calls(body: &mut Vec<Stmt>, put: Put) {
             body.extend(put(chart, flag, statement.at.0));
             continue;
         }
-        match &mut statement.kind {
-            StmtKind::If(branches, otherwise) => {
-                for (_, branch) in branches {
-                    resolve_calls(branch, put);
-                }
-                resolve_calls(otherwise, put);
-            }
-            StmtKind::Case(_, arms, otherwise) => {
-                for arm in arms {
-                    resolve_calls(&mut arm.body, put);
-                }
-                resolve_calls(otherwise, put);
-            }
-            StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-                resolve_calls(body, put);
-            }
-            StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit | StmtKind::Return => {}
-        }
+        g7_model::visit_mut::lists(&mut statement, |list| resolve_calls(list, put));
         body.push(statement);
     }
 }

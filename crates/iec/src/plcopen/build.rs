@@ -154,7 +154,7 @@ impl<'a> Builder<'_, '_, 'a> {
                 self.coder.say(&codes::NOT_CARRIED, unit.node, what);
             }
             let body = self.coder.body(language, node, &Place::of_unit(index, None, false));
-            if order.len() > 1 && body.iter().any(returns) {
+            if order.len() > 1 && body.iter().any(Stmt::returns) {
                 let what = say!("RETURN in one of several programs: the others would not run either");
                 self.coder.say(&codes::NOT_CARRIED, pou.node, what);
             }
@@ -426,28 +426,7 @@ fn names_called(text: &str, called: &mut HashSet<String>) {
 
 /// True if the statement calls a chart.
 fn calls(statement: &Stmt) -> bool {
-    called(statement).is_some() || within(statement, &calls)
-}
-
-/// True if the predicate holds for a statement within this one.
-fn within(statement: &Stmt, is: &dyn Fn(&Stmt) -> bool) -> bool {
-    match &statement.kind {
-        StmtKind::If(branches, otherwise) => {
-            branches.iter().flat_map(|(_, b)| b).any(is) || otherwise.iter().any(is)
-        }
-        StmtKind::Case(_, arms, otherwise) => {
-            arms.iter().flat_map(|a| &a.body).any(is) || otherwise.iter().any(is)
-        }
-        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-            body.iter().any(is)
-        }
-        StmtKind::Return | StmtKind::Assign { .. } | StmtKind::Call(..) | StmtKind::Exit => false,
-    }
-}
-
-/// True if the statement leaves the body.
-fn returns(statement: &Stmt) -> bool {
-    statement.kind == StmtKind::Return || within(statement, &returns)
+    called(statement).is_some() || statement.lists().into_iter().flatten().any(calls)
 }
 
 /// The statement that replaces the call of a chart: it sets the flag that the chart waits for.

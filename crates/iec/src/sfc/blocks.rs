@@ -161,20 +161,3 @@ fn ended(list: &mut Vec<Stmt>) {
         list.pop();
     }
 }
-
-/// True if a RETURN occurs: outside of loops, or within one.
-pub(super) fn returns(list: &[Stmt], outside: bool) -> bool {
-    list.iter().any(|s| match &s.kind {
-        StmtKind::Return => outside,
-        StmtKind::If(arms, otherwise) => {
-            arms.iter().any(|a| returns(&a.1, outside)) || returns(otherwise, outside)
-        }
-        StmtKind::Case(_, arms, otherwise) => {
-            arms.iter().any(|a| returns(&a.body, outside)) || returns(otherwise, outside)
-        }
-        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-            returns(body, true)
-        }
-        _ => false,
-    })
-}

@@ -11,6 +11,7 @@ use g7_model::{
 
 use super::blocks::{foreign, local, lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
+use crate::nodes;
 use crate::report::Report;
 use crate::st::{Section, Variable, settle};
 
@@ -29,8 +30,7 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
     items.extend(builder.globals());
     let alone = source.units.iter().filter(|u| u.kind != UnitKind::Function && builder.runs(u)).count() == 1;
     if !source.before.is_empty() {
-        let block = Block { locals: Vec::new(), statements: source.before.clone(), at: at.into() };
-        items.push(Item::Pre(Body::St(block), at.into()));
+        items.push(Item::Pre(Body::St(nodes::block(source.before.clone(), at)), at.into()));
     }
     let mut charts = Vec::new();
     let (mut before, mut behind) = (Vec::new(), Vec::new());
@@ -188,7 +188,7 @@ impl Builder<'_> {
         units.sort_by_key(turn);
         let at = units.first()?.0.at;
         if units.len() > 1 {
-            for (unit, _) in units.iter().filter(|u| super::blocks::returns(u.1, true)) {
+            for (unit, _) in units.iter().filter(|u| u.1.iter().any(Stmt::returns)) {
                 let what = say!("RETURN in one of several programs: the others would not run either");
                 self.report.put(Problem::new(&codes::NOT_CARRIED, unit.name.at.0, what));
             }

@@ -1,4 +1,5 @@
-//! Gives each call of a function that became a function block an instance, which is called before the statement.
+//! Replaces the calls of functions that became function blocks (see `functions`): each call gets an instance, which is
+//! called in a statement before the one that has the call.
 //!
 //! ```text
 //! functions -> here -> instances
@@ -22,7 +23,8 @@ use crate::st::{Section, Variable};
 /// recurse over these.
 const MOST_ELSIF: usize = 100;
 
-/// The parameters of each function in the order of a call without names, and its own name.
+/// For each of these functions, by its name in upper case: its name as written, and its parameters in the order of a
+/// call without names.
 type Parameters = HashMap<String, (Name, Vec<(Name, Section)>)>;
 
 /// Rewrites the calls of these functions.
@@ -31,10 +33,7 @@ pub(super) fn expand(source: &mut Source, wide: &HashSet<String>, report: &mut R
         return;
     }
     let parameters = parameters(source, wide);
-    let mut taken = Taken::default();
-    let variables = source.globals.iter().chain(source.units.iter().flat_map(|u| &u.vars));
-    variables.flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
-    source.units.iter().for_each(|u| _ = taken.take(&u.name.text));
+    let mut taken = source.names();
     for unit in &mut source.units {
         let mut calls = Calls {
             parameters: &parameters,
@@ -80,7 +79,7 @@ struct Calls<'a> {
     made: Vec<Variable>,
     /// The calls before the statement that is rewritten.
     before: Vec<Stmt>,
-    /// How many IFs can still be put into an ELSE; None behind the report that they are too many.
+    /// How many more ELSIFs can become an IF in an ELSE; None once it was reported that they are too many.
     room: Option<usize>,
 }
 
@@ -114,18 +113,13 @@ impl Calls<'_> {
                 }
             }
             StmtKind::If(arms, otherwise) => self.arms(arms, otherwise, at),
-            StmtKind::Case(selector, arms, otherwise) => {
+            StmtKind::Case(selector, ..) => {
                 visit_mut::expr(selector, self);
-                for arm in arms {
-                    arm.body = self.list(std::mem::take(&mut arm.body));
-                }
-                *otherwise = self.list(std::mem::take(otherwise));
+                self.lists_of(stmt);
             }
-            StmtKind::For { from, to, by, body, .. } => {
-                visit_mut::expr(from, self);
-                visit_mut::expr(to, self);
-                by.iter_mut().for_each(|e| visit_mut::expr(e, self));
-                *body = self.list(std::mem::take(body));
+            StmtKind::For { from, to, by, .. } => {
+                [from, to].into_iter().chain(by).for_each(|e| visit_mut::expr(e, self));
+                self.lists_of(stmt);
             }
             StmtKind::While(condition, body) => {
                 let before = self.within(condition);
@@ -144,6 +138,10 @@ impl Calls<'_> {
             }
             StmtKind::Exit | StmtKind::Return => {}
         }
+    }
+
+    fn lists_of(&mut self, stmt: &mut Stmt) {
+        visit_mut::lists(stmt, |list| *list = self.list(std::mem::take(list)));
     }
 
     /// Rewrites an expression; returns the calls that come before it.

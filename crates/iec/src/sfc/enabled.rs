@@ -39,9 +39,9 @@ pub(super) fn types<'v>(variables: impl Iterator<Item = &'v VarDecl>) -> Types {
 
 /// The function blocks and structures of a file.
 pub(super) struct File {
-    /// The types of their members, by the name of the function block or structure.
+    /// The types of their members, by the name of the function block or structure in upper case.
     members: HashMap<String, Types>,
-    /// The function blocks and functions that declare `EN`.
+    /// The function blocks and functions, in upper case, that declare a variable `EN` of their own.
     own: HashSet<String>,
 }
 
@@ -62,9 +62,9 @@ impl File {
         file
     }
 
-    /// The type of what names say, if it is one of the file.
+    /// The type of the variable that a path names, in upper case. None if the file does not declare that type.
     pub(super) fn type_of<'t>(&'t self, names: &[Name], variables: &'t Types) -> Option<&'t String> {
-        let mut names = names.iter().map(|n| n.text.split('[').next().unwrap_or("").to_uppercase());
+        let mut names = names.iter().map(|n| nodes::bare(&n.text).0.to_uppercase());
         let first = names.next().and_then(|n| variables.get(&n));
         names.fold(first, |of, member| self.members.get(of?)?.get(&member))
     }

@@ -1,4 +1,5 @@
-//! Prepares the functions of a file, which here give one elementary result and change nothing.
+//! Rewrites the functions of a file: a function of G7 has elementary inputs and one elementary result, and changes no
+//! variable.
 //!
 //! ```text
 //! read (Source) -> enabled -> here, called -> instances -> blocks -> build
@@ -20,7 +21,7 @@ use g7_model::{
 
 use super::called;
 use super::unit::{Renamed, Source, Unit, UnitKind, callee, each, upper};
-use crate::nodes::{self, Taken};
+use crate::nodes;
 use crate::report::Report;
 use crate::st::{Section, Variable};
 
@@ -49,11 +50,7 @@ fn clock(source: &mut Source) {
     if source.units.iter().any(|u| u.name.text.eq_ignore_ascii_case("TIME")) {
         return;
     }
-    let mut taken = Taken::default();
-    let variables = source.globals.iter().chain(source.units.iter().flat_map(|u| &u.vars));
-    variables.flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
-    source.units.iter().for_each(|u| _ = taken.take(&u.name.text));
-    let name = taken.give("plc_time");
+    let name = source.names().give("plc_time");
     let mut clock = Clock { name: &name, at: None };
     source.units.iter_mut().for_each(|u| each(u, &mut clock));
     let Some(at) = clock.at else { return };
@@ -134,9 +131,7 @@ impl Visitor for Omitted<'_> {
 fn own_inputs(unit: &mut Unit) {
     let mut written = Written::default();
     visit_mut::stmts(&mut unit.body, &mut written);
-    let mut taken = Taken::default();
-    unit.vars.iter().flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
-    taken.take(&unit.name.text);
+    let mut taken = unit.names();
     let mut own = HashMap::new();
     let (mut copies, mut first) = (Vec::new(), Vec::new());
     for v in unit.vars.iter().filter(|v| v.section == Section::Input) {
@@ -165,12 +160,13 @@ struct Written(HashSet<String>);
 impl Visitor for Written {
     fn path(&mut self, path: &mut Path, how: Use, _: Span) {
         if let Some(first) = path.names.first().filter(|_| how == Use::Write) {
-            self.0.insert(first.text.split('[').next().unwrap_or("").to_uppercase());
+            self.0.insert(nodes::bare(&first.text).0.to_uppercase());
         }
     }
 }
 
-/// The functions that become function blocks, in upper case: those with a wide variable, and those that call one.
+/// The functions that become function blocks, in upper case: those that have an array, a structure, an output or an
+/// in-out, and those that call such a function.
 fn wide(source: &Source) -> HashSet<String> {
     let functions = || source.units.iter().filter(|u| u.kind == UnitKind::Function);
     let of_type = |v: &VarDecl| v.array.is_some() || v.of.is_some();
@@ -216,9 +212,7 @@ impl Visitor for Calls {
 /// Makes a function block of a function. It remembers nothing: its variables get their first values in each call.
 fn into_block(unit: &mut Unit, report: &mut Report) {
     unit.kind = UnitKind::FunctionBlock;
-    let mut taken = Taken::default();
-    unit.vars.iter().flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
-    taken.take(&unit.name.text);
+    let mut taken = unit.names();
     let (mut vars, mut first) = (Vec::new(), Vec::new());
     let result = unit.result.take();
     for mut v in std::mem::take(&mut unit.vars).into_iter().chain(result) {

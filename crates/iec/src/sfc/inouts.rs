@@ -4,9 +4,9 @@
 //! functions -> here -> instances
 //! ```
 //!
-//! matiec keeps an in-out in the instance and copies it in and out at each call, so that such a text compiles there.
-//! It becomes an input, and a call that gives it a variable gets that variable back behind the call. All other in-outs
-//! stand for the variable of the caller.
+//! matiec accepts such a text: it keeps an in-out in the instance, and copies it in and out at each call. Here such an
+//! in-out becomes an input, and behind a call its value is copied to the variable of the caller. All other in-outs stand
+//! for the variable of the caller.
 
 use std::collections::{HashMap, HashSet};
 
@@ -19,7 +19,7 @@ use crate::nodes;
 use crate::report::Report;
 use crate::st::Section;
 
-/// The parameters of each function block with an in-out: inputs and in-outs in their order.
+/// For each function block with an in-out, by its name in upper case: its inputs and in-outs in the order of the text.
 type Parameters = HashMap<String, Vec<(Name, Section)>>;
 
 /// Rewrites the in-outs that are used as variables.
@@ -95,7 +95,7 @@ impl Visitor for Uses<'_> {
         for n in 1..path.names.len() {
             let (before, behind) = path.names.split_at(n);
             let Some(of) = self.file.type_of(before, self.variables) else { continue };
-            let member = behind.first().map(|m| m.text.split('[').next().unwrap_or("").to_uppercase());
+            let member = behind.first().map(|m| nodes::bare(&m.text).0.to_uppercase());
             let inout =
                 |(name, section): &(Name, Section)| *section == Section::InOut && Some(upper(name)) == member;
             if self.parameters.get(of).is_some_and(|all| all.iter().any(inout)) {

@@ -199,7 +199,7 @@ fn split(
     let calls = |s: &Stmt| charts.values().any(|c| most_in(s, &c.name) > 0);
     let last = body.iter().rposition(calls);
     let first = body.iter().position(calls);
-    if last.is_some() && super::blocks::returns(&body, true) {
+    if last.is_some() && body.iter().any(Stmt::returns) {
         let what = say!("RETURN in a program that calls a chart: the chart would evolve behind it");
         report.put(Problem::new(&codes::NOT_CARRIED, program.name.at.0, what));
     }
@@ -252,20 +252,12 @@ fn most(list: &[Stmt], chart: &str) -> usize {
 }
 
 fn most_in(stmt: &Stmt, chart: &str) -> usize {
-    match &stmt.kind {
-        StmtKind::Call(path, _) => usize::from(path.text() == chart),
-        StmtKind::If(arms, otherwise) => {
-            arms.iter().map(|a| most(&a.1, chart)).chain([most(otherwise, chart)]).max().unwrap_or(0)
-        }
-        StmtKind::Case(_, arms, otherwise) => {
-            arms.iter().map(|a| most(&a.body, chart)).chain([most(otherwise, chart)]).max().unwrap_or(0)
-        }
-        // A loop can call it again and again.
-        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-            2 * most(body, chart)
-        }
-        StmtKind::Assign { .. } | StmtKind::Exit | StmtKind::Return => 0,
+    if let StmtKind::Call(path, _) = &stmt.kind {
+        return usize::from(path.text() == chart);
     }
+    let most = stmt.lists().into_iter().map(|list| most(list, chart)).max().unwrap_or(0);
+    // A loop can call it again and again.
+    if stmt.is_loop() { 2 * most } else { most }
 }
 
 /// Puts the assignments of their inputs in the place of calls.
@@ -284,28 +276,15 @@ impl Turns<'_, '_> {
         let mut made = Vec::new();
         for mut stmt in list {
             let charts = self.charts;
-            match &mut stmt.kind {
-                StmtKind::Call(path, args) => {
-                    let text = path.text();
-                    if let Some(chart) = charts.values().find(|c| *c.name == *text) {
-                        let args = std::mem::take(args);
-                        made.extend(self.call(chart, &args, stmt.at.0, guarded));
-                        continue;
-                    }
+            if let StmtKind::Call(path, args) = &mut stmt.kind {
+                let text = path.text();
+                if let Some(chart) = charts.values().find(|c| *c.name == *text) {
+                    let args = std::mem::take(args);
+                    made.extend(self.call(chart, &args, stmt.at.0, guarded));
+                    continue;
                 }
-                StmtKind::If(arms, otherwise) => {
-                    arms.iter_mut().for_each(|a| a.1 = self.list(std::mem::take(&mut a.1), true));
-                    *otherwise = self.list(std::mem::take(otherwise), true);
-                }
-                StmtKind::Case(_, arms, otherwise) => {
-                    arms.iter_mut().for_each(|a| a.body = self.list(std::mem::take(&mut a.body), true));
-                    *otherwise = self.list(std::mem::take(otherwise), true);
-                }
-                StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-                    *body = self.list(std::mem::take(body), true);
-                }
-                StmtKind::Assign { .. } | StmtKind::Exit | StmtKind::Return => {}
             }
+            visit_mut::lists(&mut stmt, |list| *list = self.list(std::mem::take(list), true));
             made.push(stmt);
         }
         made

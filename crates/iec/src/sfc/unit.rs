@@ -6,6 +6,7 @@ use std::ops::Range;
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{Composed, Expr, Name, Nanos, Path, Qualifier, Span, Stmt};
 
+use crate::nodes::{self, Taken};
 use crate::st::{Types, Variable};
 
 /// The whole file.
@@ -106,7 +107,26 @@ pub(super) struct Instance {
     pub(super) at: Span,
 }
 
+impl Source {
+    /// The names of all units and variables.
+    pub(super) fn names(&self) -> Taken {
+        let mut taken = Taken::default();
+        let variables = self.globals.iter().chain(self.units.iter().flat_map(|u| &u.vars));
+        variables.flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
+        self.units.iter().for_each(|u| _ = taken.take(&u.name.text));
+        taken
+    }
+}
+
 impl Unit {
+    /// The names of its variables, and its own.
+    pub(super) fn names(&self) -> Taken {
+        let mut taken = Taken::default();
+        self.vars.iter().flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
+        taken.take(&self.name.text);
+        taken
+    }
+
     pub(super) fn is_chart(&self) -> bool {
         self.parts.iter().any(|p| matches!(p, Part::Step { .. } | Part::Transition(_)))
     }
@@ -130,7 +150,7 @@ pub(super) struct Renamed<'n>(pub(super) &'n HashMap<String, String>);
 impl Visitor for Renamed<'_> {
     fn path(&mut self, path: &mut Path, _: Use, _: Span) {
         let Some(first) = path.names.first_mut() else { return };
-        let (bare, index) = first.text.split_at(first.text.find('[').unwrap_or(first.text.len()));
+        let (bare, index) = nodes::bare(&first.text);
         if let Some(own) = self.0.get(&bare.to_uppercase()) {
             first.text = format!("{own}{index}").into();
         }

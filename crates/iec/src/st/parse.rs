@@ -61,10 +61,15 @@ impl<'a> Parser<'a> {
     pub(super) fn body(mut self) -> Vec<Stmt> {
         let statements = self.statements();
         self.expect_end();
+        self.tell_foreign();
+        statements
+    }
+
+    /// Reports a pragma with statements of another language.
+    fn tell_foreign(&mut self) {
         if let Some(at) = self.foreign(0) {
             self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, foreign()));
         }
-        statements
     }
 
     /// Reads the whole text as one expression; `;` may follow.
@@ -72,6 +77,7 @@ impl<'a> Parser<'a> {
         let expr = self.expr();
         while self.eat(";") {}
         self.expect_end();
+        self.tell_foreign();
         expr
     }
 

@@ -10,6 +10,8 @@ use g7_model::{
     Name, Path, Stmt, StmtKind, Target, VarDecl, Work,
 };
 
+use crate::nodes::bare;
+
 /// Gives every name in a document the spelling of its declaration.
 pub fn settle(document: &mut Document) {
     let mut file = Spelling::default();
@@ -124,11 +126,6 @@ fn of_type(composed: &Composed) -> Spelling {
     composed.members.iter().chain(&composed.inouts).for_each(|v| own.variables(v));
     composed.body.iter().for_each(|b| own.locals(b.block()));
     own
-}
-
-/// A name without the index that it may have, and the index.
-fn bare(name: &str) -> (&str, &str) {
-    name.split_at(name.find('[').unwrap_or(name.len()))
 }
 
 struct Settler<'a> {

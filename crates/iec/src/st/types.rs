@@ -104,9 +104,13 @@ impl Parser<'_> {
         let Some(name) = self.name(say!("a type")) else { return Shape::Simple(Type::Bool, None) };
         match elementary(&upper) {
             Some(Type::String(_)) => Shape::Simple(Type::String(self.length()), None),
-            // Values with a type: `INT (Off := 0, Hand := 2)`.
-            Some(Type::Int) if self.at("(") && self.ahead(1).kind == Kind::Word => self.enumeration(),
-            // The declaration reads the direction of an input: `BOOL R_EDGE`.
+            // Values with a type: `INT (Off := 0, Hand := 2)`; `INT (Least..7)` is a subrange.
+            Some(Type::Int)
+                if self.at("(") && self.ahead(1).kind == Kind::Word && !self.ahead_is(2, "..") =>
+            {
+                self.enumeration()
+            }
+            // `R_EDGE` and `F_EDGE` can stand behind BOOL; `declaration` reads them.
             Some(ty) => match self.subrange() {
                 Some(limits) => Shape::Range(ty, Box::new(limits), None),
                 None => Shape::Simple(ty, None),

@@ -4,7 +4,7 @@ use g7_model::codes;
 use g7_model::{
     Action, Block, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, Function, Item, Layout,
     Literal, Local, Name, NamedAction, Param, Placed, Problem, Profile, ProfileName, Qualifier, Said,
-    Section, Span, Step, StepKind, Stmt, StmtKind, Target, Transition, VarDecl, VarKind, say,
+    Section, Span, Step, StepKind, Stmt, Target, Transition, VarDecl, VarKind, say,
 };
 
 use super::bodies::At;
@@ -70,7 +70,7 @@ impl<'d> Lower<'d> {
         self.show(&mut charts);
         let mut body = std::mem::take(&mut self.channels);
         body.append(&mut self.looking);
-        if returns(&pre) && !(self.copies.is_empty() && self.sections.is_empty()) {
+        if pre.iter().any(Stmt::returns) && !(self.copies.is_empty() && self.sections.is_empty()) {
             self.lost(
                 at,
                 say!("RETURN in a body before the charts: what is computed behind it would not run"),
@@ -181,7 +181,7 @@ impl<'d> Lower<'d> {
         }
         let at = At { chart, ..At::default() };
         let list = self.block(body.block(), &at, "Body");
-        if !into.is_empty() && returns(into) {
+        if !into.is_empty() && into.iter().any(Stmt::returns) {
             self.lost(span, say!("RETURN in one of several bodies: those behind it would not run"));
         }
         into.extend(list);
@@ -551,15 +551,4 @@ fn is_address(text: &str) -> bool {
     let digits = rest.strip_prefix(['X', 'B', 'W', 'D', 'L']).unwrap_or(&rest);
     digits == "*"
         || digits.split('.').all(|part| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit()))
-}
-
-/// True if a body may end early.
-fn returns(list: &[Stmt]) -> bool {
-    list.iter().any(|s| match &s.kind {
-        StmtKind::Return => true,
-        StmtKind::If(arms, otherwise) => arms.iter().any(|a| returns(&a.1)) || returns(otherwise),
-        StmtKind::Case(_, arms, otherwise) => arms.iter().any(|a| returns(&a.body)) || returns(otherwise),
-        StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => returns(body),
-        _ => false,
-    })
 }

@@ -32,7 +32,7 @@ PROGRAM p
     own : STRUCT a : BOOL; b : INT; END_STRUCT;
     i : INT;
     share : Percent := 4;
-    near : ARRAY[0..1] OF UINT(LAST..7);
+    near : ARRAY[0..1] OF INT(LAST..7);
   END_VAR
   INITIAL_STEP Wait: END_STEP
   STEP Work: Turn(N); END_STEP
@@ -77,7 +77,7 @@ END_PROGRAM";
          var own : own_type
          var i : INT
          var share : INT(0..100) := 4
-         var near : ARRAY[0..1] OF UINT(last..7)
+         var near : ARRAY[0..1] OF INT(last..7)
          chart p {
            initial step Wait
            step `Work` { N Turn }

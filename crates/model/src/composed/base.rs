@@ -46,7 +46,7 @@ pub struct Composition<'d> {
     /// How many variables and statements can still be made.
     pub(super) room: usize,
     pub(super) full: bool,
-    /// The loops round the statement in hand.
+    /// The loops in which the current statement stands.
     pub(super) loops: Vec<Loop>,
     pub(super) problems: Vec<Problem>,
 }

@@ -11,7 +11,7 @@ pub(super) struct Lost;
 
 /// The meaning of a path.
 enum Meaning<'d> {
-    /// A variable, or a part of one.
+    /// A variable, or an element or a member of one.
     Variable(Box<Spot<'d>>),
     /// A chart of an instance, or a step of it: the path with the full name of the chart.
     OfChart(ExprKind),
@@ -42,7 +42,7 @@ impl<'d> Composition<'d> {
         all
     }
 
-    /// Replaces the names in the indexes of some segments, which are those of the statement in hand until then.
+    /// Replaces the names in the indexes of some segments. The indexes are expressions of the statement that has the path.
     pub(super) fn indexed(&mut self, segments: &mut [Segment], env: &Env<'_, 'd>) {
         for e in segments.iter_mut().flat_map(|s| &mut s.index) {
             self.expr(e, env);
@@ -72,7 +72,7 @@ impl<'d> Composition<'d> {
         own.or_else(|| self.file.get(name)).copied()
     }
 
-    /// The variables of the chart in hand.
+    /// The variables of the chart in which the path stands.
     fn own_scope(&self, env: &Env<'_, 'd>) -> Option<&Scope<'d>> {
         self.scope(env.root().0?)
     }

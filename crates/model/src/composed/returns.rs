@@ -11,16 +11,11 @@ const MOST: usize = 1 << 14;
 
 /// The statements with the same effect, without RETURN.
 pub(super) fn without(list: Vec<Stmt>) -> Result<Vec<Stmt>, Problem> {
-    if !list.iter().any(returns) {
+    if !list.iter().any(Stmt::returns) {
         return Ok(list);
     }
     let mut room = MOST;
     before(list, &mut room)
-}
-
-/// True if a RETURN stands somewhere in a statement.
-fn returns(s: &Stmt) -> bool {
-    s.kind == StmtKind::Return || s.lists().into_iter().flatten().any(returns)
 }
 
 /// Replaces each RETURN in a loop of a body: it sets a local variable and leaves the loop by EXIT; the statement behind
@@ -47,7 +42,7 @@ pub(super) fn in_loops(list: &[Stmt]) -> bool {
 }
 
 fn in_loop(s: &Stmt) -> bool {
-    if s.is_loop() { returns(s) } else { s.lists().into_iter().any(in_loops) }
+    if s.is_loop() { s.returns() } else { s.lists().into_iter().any(in_loops) }
 }
 
 /// Replaces the RETURNs in the loops of a list of statements that does not stand in a loop itself.
@@ -106,7 +101,7 @@ impl Visitor for Names {
 
 /// The statements up to a RETURN; what follows an IF or CASE with one goes into the arms that do not return.
 fn before(mut list: Vec<Stmt>, room: &mut usize) -> Result<Vec<Stmt>, Problem> {
-    let Some(first) = list.iter().position(returns) else { return taken(list, room) };
+    let Some(first) = list.iter().position(Stmt::returns) else { return taken(list, room) };
     let rest = list.split_off(first + 1);
     let Some(Stmt { kind, at }) = list.pop() else { return Ok(list) };
     let mut arm = |body: Vec<Stmt>| before([body, rest.clone()].concat(), room);

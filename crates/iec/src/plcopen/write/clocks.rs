@@ -80,31 +80,18 @@ pub(super) fn outputs_apart(list: &mut Vec<Stmt>) {
     let mut made = Vec::with_capacity(list.len());
     for mut stmt in std::mem::take(list) {
         let mut behind = Vec::new();
-        match &mut stmt.kind {
-            StmtKind::Call(block, args) => {
-                for arg in args.iter().filter(|a| a.output) {
-                    let Some(output) = &arg.name else { continue };
-                    let at = output.at.0;
-                    let mut path = block.clone();
-                    path.names.push(output.clone());
-                    let value = nodes::expr(g7_model::ExprKind::Path(path), at);
-                    behind.push(nodes::assign(arg.value.clone(), value, at));
-                }
-                args.retain(|a| !a.output);
+        if let StmtKind::Call(block, args) = &mut stmt.kind {
+            for arg in args.iter().filter(|a| a.output) {
+                let Some(output) = &arg.name else { continue };
+                let at = output.at.0;
+                let mut path = block.clone();
+                path.names.push(output.clone());
+                let value = nodes::expr(g7_model::ExprKind::Path(path), at);
+                behind.push(nodes::assign(arg.value.clone(), value, at));
             }
-            StmtKind::If(arms, otherwise) => {
-                arms.iter_mut().for_each(|a| outputs_apart(&mut a.1));
-                outputs_apart(otherwise);
-            }
-            StmtKind::Case(_, arms, otherwise) => {
-                arms.iter_mut().for_each(|a| outputs_apart(&mut a.body));
-                outputs_apart(otherwise);
-            }
-            StmtKind::For { body, .. } | StmtKind::While(_, body) | StmtKind::Repeat(body, _) => {
-                outputs_apart(body);
-            }
-            StmtKind::Assign { .. } | StmtKind::Exit | StmtKind::Return => {}
+            args.retain(|a| !a.output);
         }
+        g7_model::visit_mut::lists(&mut stmt, outputs_apart);
         made.push(stmt);
         made.append(&mut behind);
     }

@@ -459,19 +459,10 @@ fn active(step: &Name, at: Span) -> Expr {
     nodes::name(&[&step.text, "X"], at)
 }
 
-/// The place of a RETURN in a list.
+/// The place of the last RETURN in a list.
 fn returns(list: &[Stmt]) -> Option<Span> {
-    struct Returns(Option<Span>);
-    impl Visitor for Returns {
-        fn stmt(&mut self, stmt: &mut Stmt) {
-            if matches!(stmt.kind, StmtKind::Return) {
-                self.0 = Some(stmt.at.0);
-            }
-        }
-    }
-    let mut found = Returns(None);
-    visit_mut::stmts(&mut list.to_vec(), &mut found);
-    found.0
+    let own = |s: &Stmt| (s.kind == StmtKind::Return).then_some(s.at.0);
+    list.iter().rev().find_map(|s| own(s).or_else(|| s.lists().into_iter().rev().find_map(returns)))
 }
 
 /// Finds the steps whose activity is read, and puts their memories in the place.
