@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 
 use g7_model::Type as Elementary;
 
-use super::units::{Library, Parameter, Type, Unit};
+use super::units::{Library, Parameter, Unit};
 
 /// The functions with which this port of OSCAT asks for the time: the body in C for matiec, and that for G7.
 const CLOCKS: [(&str, &str, &str); 2] = [
@@ -166,7 +166,7 @@ impl Made {
             self.before += &array.each(&mut self.locals, to, |element, count| {
                 format!("{element} := {};\n", value.replace('#', count))
             });
-        } else if let Some((Type::Struct(members), _)) = library.types.get(&ty.to_uppercase()) {
+        } else if let Some((members, _)) = library.types.get(&ty.to_uppercase()) {
             for m in members {
                 self.filled(library, &m.ty, &format!("{to}.{}", m.name), &format!("{from}_{}", m.name));
             }
@@ -198,7 +198,7 @@ impl Made {
                 "LREAL" => format!("{to} := {to} + {cell} * DINT_TO_LREAL({count});\n"),
                 ty => format!("{to} := {to} + {ty}_TO_LREAL({cell}) * DINT_TO_LREAL({count});\n"),
             });
-        } else if let Some((Type::Struct(members), _)) = library.types.get(&ty.to_uppercase()) {
+        } else if let Some((members, _)) = library.types.get(&ty.to_uppercase()) {
             for m in members {
                 self.shown(library, &m.ty, &format!("{from}.{}", m.name), &format!("{to}_{}", m.name));
             }

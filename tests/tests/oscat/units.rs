@@ -15,24 +15,17 @@ pub(crate) struct Unit {
     pub(crate) outputs: Vec<Parameter>,
 }
 
-/// A parameter with its type, as they are written.
-#[derive(Clone)]
+/// A parameter or a member with its type, as they are written.
 pub(crate) struct Parameter {
     pub(crate) name: String,
     pub(crate) ty: String,
 }
 
-/// A type of the library.
-#[derive(Clone)]
-pub(crate) enum Type {
-    Struct(Vec<Parameter>),
-    Other,
-}
-
-/// The units by their names in capitals, and the types with their texts.
+/// The units by their names in upper case, and the types: the members of a structure (none for other types), and the
+/// text of the declaration.
 pub(crate) struct Library {
     pub(crate) units: BTreeMap<String, Unit>,
-    pub(crate) types: BTreeMap<String, (Type, String)>,
+    pub(crate) types: BTreeMap<String, (Vec<Parameter>, String)>,
 }
 
 impl Library {
@@ -74,17 +67,17 @@ impl Library {
     fn add_types(&mut self, text: &str) {
         let mut rest = text;
         while let Some((name, behind)) = rest.split_once(':') {
-            let (ty, body, next) = if behind.trim_start().starts_with("STRUCT") {
+            let (members, body, next) = if behind.trim_start().starts_with("STRUCT") {
                 let (fields, next) = behind.split_once("END_STRUCT").unwrap_or((behind, ""));
                 let fields = fields.trim_start().trim_start_matches("STRUCT");
                 let next = next.split_once(';').map_or("", |(_, next)| next);
-                (Type::Struct(parameters(fields)), format!("STRUCT {fields} END_STRUCT"), next)
+                (parameters(fields), format!("STRUCT {fields} END_STRUCT"), next)
             } else {
                 let (body, next) = behind.split_once(';').unwrap_or((behind, ""));
-                (Type::Other, body.to_owned(), next)
+                (Vec::new(), body.to_owned(), next)
             };
             let name = name.trim();
-            self.types.entry(name.to_uppercase()).or_insert((ty, format!("{name} : {body};\n")));
+            self.types.entry(name.to_uppercase()).or_insert((members, format!("{name} : {body};\n")));
             rest = next;
         }
     }

@@ -168,8 +168,8 @@ impl Resolver<'_, '_> {
                     return Some(nested(function, values, at));
                 };
                 let numbers = values.into_iter().map(|e| converted(e, number)).collect();
-                let least = nested(function, numbers, at).expr;
-                Some(Typed { expr: converted(least, ty), literal: false })
+                let chosen = nested(function, numbers, at).expr;
+                Some(Typed { expr: converted(chosen, ty), literal: false })
             }
             Shape::Select | Shape::Multiplex => {
                 let selector = if shape == Shape::Select { Type::Bool } else { Type::Lint };
