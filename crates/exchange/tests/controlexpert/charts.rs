@@ -34,7 +34,7 @@ fn what_touches_on_the_grid_is_joined() {
         "  Drain -> Fill when not Go",
         "    Valve_out := TRUE",
         "    Pause(IN := not `Tank.Empty`, PT := 50ms, Q => Alarm)",
-        "  transition section Both := Ready_both and Fill.T >= 30ms",
+        "  transition section Both := Ready_both and Fill.t >= 30ms",
         "  IF ↑Drain.X THEN",
         "  step Heat at (13, 12)",
     ] {

@@ -380,7 +380,7 @@ fn chart(seed: u64) -> String {
         "a and not b",
         "↑a",
         "↓b or c",
-        "S0.T >= 20ms",
+        "S0.t >= 20ms",
         "S1.X and c",
         "n < 5",
         "TRUE",

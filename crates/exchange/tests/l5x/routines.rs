@@ -33,7 +33,7 @@ fn a_routine_is_a_chart_with_the_tags_that_it_names() {
         "  step S_Empty { S `A_Ready.Q` }",
         // `Go` is another name of `Start`.
         "  T_Start: S_Wait -> (S_Pour, S_Warm) when Start and Level < 1.5",
-        "  T_Both: (S_Pour, S_Warm) -> S_Empty when S_Warm.T >= 200ms and TIME_TO_DINT(S_Pour.T) >= 100",
+        "  T_Both: (S_Pour, S_Warm) -> S_Empty when S_Warm.t >= 200ms and TIME_TO_DINT(S_Pour.t) >= 100",
         "  T_Stop: S_Empty -> End when `Now.Hot` or `A_Late.Q`",
         "  T_Again: S_Empty -> S_Wait when Start",
         "  action A_Stop { Pump := 0 }",

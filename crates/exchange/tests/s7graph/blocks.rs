@@ -37,7 +37,7 @@ fn a_sequence_is_a_chart_and_networks_are_expressions() {
         "    N done",
         "    P0 Left := TRUE",
         "  Start: `Wait here` -> (Down, Turn) when Go",
-        "  Idle: `Wait here` -> Up when `Wait here`.T >= 200ms and count < 2",
+        "  Idle: `Wait here` -> Up when `Wait here`.t >= 200ms and count < 2",
         // The condition that the two steps watch holds the transition behind them back.
         "  Both: (Down, Turn) -> Up when Low and ↑Tick and not Jam and not Jam",
         "  Back: Up -> `Wait here` when TRUE",

@@ -1,19 +1,16 @@
-//! Statements and expressions of a unit, rewritten with the names of the document. Calls of the
-//! file's own function blocks are replaced by the bodies of the blocks.
+//! Statements and expressions of a unit, rewritten with the names of the document. Calls of function blocks whose
+//! instances are units (see [`super::units`]) are replaced by their bodies.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
 
 use g7_model::codes;
 use g7_model::{Arg, CaseArm, Expr, ExprKind, Name, Path, Said, Span, Stmt, StmtKind, Type, say};
 
-use super::network;
-use super::read::{PouKind, SectionKind};
+use super::read::SectionKind;
 use super::tree::{self, Language, Xml, head};
 use super::units::{Meaning, Plan, name_of};
-use crate::nodes;
+use crate::nodes::{self, bare};
 use crate::report::Report;
-use crate::xml::attr;
-use crate::{il, st};
 
 /// The most statements after calls have been replaced.
 const MOST_STATEMENTS: usize = 200_000;
@@ -78,10 +75,6 @@ impl Place {
     pub(super) fn with_unit(&self, unit: usize) -> Place {
         Place { unit: Some(unit), ..self.clone() }
     }
-
-    pub(super) fn of_function(locals: HashMap<String, String>) -> Place {
-        Place { unit: None, inside: None, locals, depth: 0, nested: 0, action: false }
-    }
 }
 
 impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
@@ -98,18 +91,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
 
     /// The statements of a body in any language except SFC.
     pub(super) fn body(&mut self, language: Language, node: Xml<'a>, place: &Place) -> Vec<Stmt> {
-        let raw = match language {
-            Language::St => {
-                let text = attr::content(node);
-                st::statements(&text.text, &|r| text.place(&r), self.report)
-            }
-            Language::Il => {
-                let text = attr::content(node);
-                il::statements(&text.text, &|r| text.place(&r), self.report)
-            }
-            Language::Ld | Language::Fbd => network::statements(node, self.report),
-            Language::Sfc => Vec::new(),
-        };
+        let raw = self.plan.code.body(language, node, self.report);
         self.statements(raw, place)
     }
 
@@ -211,6 +193,10 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
                 t2: t2.map(|t| Box::new(self.expr(*t, place))),
             },
             ExprKind::Call(mut path, args) => {
+                if path.names.first().is_some_and(|n| self.plan.code.wide.contains(&n.text.to_uppercase())) {
+                    let what = crate::sfc::in_receptivity();
+                    self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, expr.at.0, what));
+                }
                 if let [name] = path.names.as_mut_slice()
                     && let Some(pou) = self.plan.functions.get(&name.text.to_uppercase())
                     && let Some(pou) = self.plan.project.pous.get(*pou)
@@ -243,7 +229,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
     fn find(&self, names: &[Name], place: &Place) -> Found {
         let plain = || Found::Path(names.to_vec(), None);
         let Some(first) = names.first() else { return plain() };
-        let upper = first.text.to_uppercase();
+        let upper = bare(&first.text).0.to_uppercase();
         if let Some(local) = place.locals.get(&upper) {
             let mut found = names.to_vec();
             if let Some(first) = found.first_mut() {
@@ -263,6 +249,9 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             && let Some(meaning) = self.plan.globals.get(&second.text.to_uppercase())
         {
             return self.meant(meaning, None, names, 1, place);
+        }
+        if names.len() > 1 && self.plan.code.enumerations.contains(&upper) {
+            return Found::Path(names.get(1..).unwrap_or_default().to_vec(), None);
         }
         let units = self.plan.units.iter().enumerate();
         let program = units.filter(|(_, u)| u.program).find(|(_, u)| u.chart.to_uppercase() == upper);
@@ -290,7 +279,9 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
         match meaning {
             Meaning::Var(chart, name, ty) => {
                 let mut found: Vec<Name> = chart.as_ref().and_then(home).into_iter().collect();
-                found.push(Name::new(name.as_str(), at));
+                // The index of an element of an array stands in the name: `d[i]`.
+                let index = names.get(k).map_or("", |n| bare(&n.text).1);
+                found.push(Name::new(format!("{name}{index}"), at));
                 found.extend(rest());
                 Found::Path(found, *ty)
             }
@@ -463,12 +454,6 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             Found::Action(unit, action) => Some((unit, action)),
             Found::Path(..) | Found::Unit(_) => None,
         }
-    }
-
-    /// All functions of the file.
-    pub(super) fn functions(&self) -> impl Iterator<Item = usize> + use<'p, 'a> {
-        let pous = self.plan.project.pous.iter().enumerate();
-        pous.filter(|(_, p)| p.kind == PouKind::Function).map(|(i, _)| i)
     }
 
     /// Reports a problem of an element.

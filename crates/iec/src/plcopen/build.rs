@@ -4,21 +4,23 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::codes;
 use g7_model::{
-    Block, Body, Chart, ChartItem, ChartKind, Document, Expr, Function, Item, Local, Name, Param, Problem,
-    Profile, ProfileName, Span, Stmt, StmtKind, Switch, Type, VarDecl, VarKind, say,
+    Body, Chart, ChartItem, ChartKind, Document, Expr, Item, Problem, Profile, ProfileName, Span, Stmt,
+    StmtKind, Switch, Type, VarDecl, VarKind, say,
 };
 
 use super::bodies::{Callee, Calls, Coder, Place, Put, called, flags_of, resolve_calls};
 use super::chart::without_blocks;
+use super::code;
 use super::declare;
 use super::draft::{Made, Maker, Order, block};
 use super::inputs;
-use super::read::{Pou, Project, SectionKind};
-use super::tree::{self, Language, head, text};
-use super::types::{self, Known};
+use super::read::{Pou, Project};
+use super::tree::{self, Language, head};
+use super::types::Shapes;
 use super::units::{self, Meaning, Unit, name_of};
-use crate::nodes::{self, Taken, line};
+use crate::nodes::{self, Taken};
 use crate::report::Report;
+use crate::st;
 
 /// The document of a project.
 pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report: &mut Report) -> Document {
@@ -26,7 +28,9 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
         return Document { items: Vec::new(), notes: report.take_notes() };
     }
     let at = report.span(&project.at);
-    let plan = units::plan(project, report);
+    let mut shapes = Shapes::new(project, report);
+    let code = code::read(project, &mut shapes, report);
+    let plan = units::plan(project, code, report);
     let plain_actions = without_blocks(root);
     let switches = if plain_actions { vec![(Switch::FinalScan(false), at.into())] } else { Vec::new() };
     let steps = root.descendants().any(|n| n.is_element() && tree::tag(n) == "step");
@@ -35,12 +39,14 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
     if let Some(cycle) = project.cycle {
         items.push(Item::Cycle(cycle, at.into()));
     }
-    items.extend(declare::globals(&plan, report).into_iter().map(Item::Var));
+    items.extend(plan.code.items.iter().cloned());
+    let globals = declare::globals(&plan, &mut shapes, report);
+    items.extend(globals.into_iter().chain(plan.code.globals.iter().cloned()).map(Item::Var));
     let declared: Vec<_> = plan
         .units
         .iter()
         .map(|unit| match project.pous.get(unit.pou) {
-            Some(pou) => declare::of_unit(&plan, unit, pou, report),
+            Some(pou) => declare::of_unit(&plan, &mut shapes, unit, pou, report),
             None => declare::Declared::default(),
         })
         .collect();
@@ -50,14 +56,14 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
         of_charts.push(declared.of_chart);
     }
     let mut builder = Builder { coder: Coder::new(&plan, report), of_charts, plain_actions };
-    let functions: Vec<Item> = builder.functions();
-    items.extend(functions);
+    items.extend(plan.code.functions.iter().cloned());
     let made = builder.everything();
     items.extend(made.pre.into_iter().map(|b| Item::Pre(Body::St(block(b, at)), at.into())));
     items.extend(made.post.into_iter().map(|b| Item::Post(Body::St(block(b, at)), at.into())));
     items.extend(made.charts.charts.into_iter().map(Item::Chart));
     items.extend(made.charts.layouts.into_iter().map(Item::Layout));
     let mut document = Document { items, notes: report.take_notes() };
+    st::settle(&mut document);
     inputs::settle(&mut document, report);
     document
 }
@@ -235,7 +241,7 @@ impl<'a> Builder<'_, '_, 'a> {
         }
         let mut post = last.map(|last| body.split_off(last + 1)).unwrap_or_default();
         post.append(&mut behind);
-        let mut pre = Vec::new();
+        let mut pre = self.coder.plan.code.before.clone();
         for ((chart, called), (calling, at)) in flags {
             let flag = |name: &str| nodes::name(&[chart, name], *at);
             if let Some(calling) = calling {
@@ -271,68 +277,6 @@ impl<'a> Builder<'_, '_, 'a> {
             );
             self.coder.report.put(Problem::new(&codes::DIFFERENT, other.at.0, what));
         }
-    }
-
-    fn functions(&mut self) -> Vec<Item> {
-        let plan = self.coder.plan;
-        self.coder
-            .functions()
-            .collect::<Vec<_>>()
-            .into_iter()
-            .filter_map(|f| {
-                let pou = plan.project.pous.get(f)?;
-                let at = self.coder.report.span(&head(pou.node));
-                let name = Name::new(line(&pou.name.text), self.coder.report.span(&pou.name.at));
-                let result = match pou.result.map(types::of) {
-                    Some(Known::Type(ty)) => ty,
-                    _ => {
-                        let what =
-                            say!("the function `{}` has no result that can be carried over", name.text);
-                        self.coder.say(&codes::NOT_CARRIED, pou.node, what);
-                        return None;
-                    }
-                };
-                let mut locals = HashMap::from([(name.text.to_uppercase(), name.text.to_string())]);
-                let (mut params, mut own) = (Vec::new(), Vec::new());
-                for section in &pou.sections {
-                    for variable in &section.variables {
-                        let Some(local) = name_of(*variable) else { continue };
-                        if section.kind == SectionKind::External {
-                            continue;
-                        }
-                        let at = self.coder.report.span(&text(*variable, "name")?.at);
-                        let Known::Type(ty) = types::known(*variable) else {
-                            let what = say!("`{local}` is of a type that has no counterpart");
-                            self.coder.say(&codes::NOT_CARRIED, *variable, what);
-                            continue;
-                        };
-                        locals.insert(local.to_uppercase(), local.clone());
-                        let name = Name::new(local, at);
-                        if section.kind == SectionKind::Input {
-                            params.push(Param { name, ty });
-                            continue;
-                        }
-                        if matches!(section.kind, SectionKind::Output | SectionKind::InOut) {
-                            let what = say!("a function with further outputs; they are dropped");
-                            self.coder.say(&codes::NOT_CARRIED, *variable, what);
-                        }
-                        let init = types::initial(*variable, ty, self.coder.report);
-                        own.push(Local { names: vec![name], ty, init, at: at.into() });
-                    }
-                }
-                let place = Place::of_function(locals);
-                let statements = match tree::body(pou.node) {
-                    Some((Language::Sfc, node)) => {
-                        self.coder.say(&codes::NOT_CARRIED, node, say!("a function whose body is a chart"));
-                        Vec::new()
-                    }
-                    Some((language, node)) => self.coder.body(language, node, &place),
-                    None => Vec::new(),
-                };
-                let body = Block { locals: own, statements, at: at.into() };
-                Some(Item::Function(Function { name, params, result, body, at: at.into() }))
-            })
-            .collect()
     }
 }
 

@@ -3,14 +3,15 @@
 use std::collections::HashSet;
 
 use g7_model::codes;
-use g7_model::{Array, Expr, Name, Type, VarDecl, VarKind, say};
+use g7_model::{Name, Type, VarDecl, VarKind, say};
 
 use super::read::{Pou, Section, SectionKind};
-use super::tree::{Xml, documentation, head, kid, text};
-use super::types::{self, Known};
-use super::units::{Meaning, Plan, Unit, name_of};
+use super::tree::{Xml, head, kid, text};
+use super::types::{self, Shapes};
+use super::units::{Meaning, Plan, Unit};
 use crate::nodes::line;
 use crate::report::Report;
+use crate::st::{self, Shape};
 use crate::xml::attr::Text;
 
 /// The variables of a unit: those of the file and those of its chart.
@@ -21,12 +22,12 @@ pub(super) struct Declared {
 }
 
 /// The global variables.
-pub(super) fn globals(plan: &Plan, report: &mut Report) -> Vec<VarDecl> {
+pub(super) fn globals<'a>(plan: &Plan<'a>, shapes: &mut Shapes<'a>, report: &mut Report) -> Vec<VarDecl> {
     let mut seen = HashSet::new();
     let mut found = Vec::new();
     for section in &plan.project.globals {
         for variable in &section.variables {
-            let Some(name) = named(*variable, report) else { continue };
+            let Some(name) = types::name(*variable, report) else { continue };
             if !seen.insert(name.text.to_uppercase()) {
                 twice(&name, report);
                 continue;
@@ -34,19 +35,25 @@ pub(super) fn globals(plan: &Plan, report: &mut Report) -> Vec<VarDecl> {
             if let Some(Meaning::Unit(_)) = plan.globals.get(&name.text.to_uppercase()) {
                 continue;
             }
-            found.extend(declaration(plan, *variable, name, section, false, report));
+            found.extend(declaration(plan, shapes, *variable, name, section, false, report));
         }
     }
     found
 }
 
 /// The variables of a unit.
-pub(super) fn of_unit(plan: &Plan, unit: &Unit, pou: &Pou, report: &mut Report) -> Declared {
+pub(super) fn of_unit<'a>(
+    plan: &Plan<'a>,
+    shapes: &mut Shapes<'a>,
+    unit: &Unit,
+    pou: &Pou<'a>,
+    report: &mut Report,
+) -> Declared {
     let mut declared = Declared::default();
     let mut seen = HashSet::new();
     for section in &pou.sections {
         for variable in &section.variables {
-            let Some(name) = named(*variable, report) else { continue };
+            let Some(name) = types::name(*variable, report) else { continue };
             let upper = name.text.to_uppercase();
             if section.kind == SectionKind::External {
                 if plan.globals.contains_key(&upper) {
@@ -62,11 +69,15 @@ pub(super) fn of_unit(plan: &Plan, unit: &Unit, pou: &Pou, report: &mut Report) 
             if matches!(unit.names.get(&upper), Some(Meaning::Unit(_))) {
                 continue;
             }
-            let decl = declaration(plan, *variable, name, section, unit.program, report);
+            let decl = declaration(plan, shapes, *variable, name, section, unit.program, report);
             let place =
                 if unit.of_file.contains(&upper) { &mut declared.of_file } else { &mut declared.of_chart };
             place.extend(decl);
         }
+    }
+    for decl in plan.code.made.get(&unit.pou).into_iter().flatten() {
+        let own = decl.names.iter().any(|n| unit.of_file.contains(&n.text.to_uppercase()));
+        if own { &mut declared.of_file } else { &mut declared.of_chart }.push(decl.clone());
     }
     declared
 }
@@ -76,66 +87,45 @@ fn twice(name: &Name, report: &mut Report) {
     report.put(g7_model::Problem::new(&codes::TWICE, name.at.0, what));
 }
 
-fn named(variable: Xml, report: &mut Report) -> Option<Name> {
-    let Some(name) = name_of(variable) else {
-        report.say(&codes::LEFT_OUT, &head(variable), say!("a variable without a name; it is left out"));
-        return None;
-    };
-    let at = text(variable, "name").map_or_else(|| head(variable), |t| t.at);
-    Some(Name::new(name, report.span(&at)))
-}
-
 /// Declares one variable; None if its type has no counterpart.
 fn declaration<'a>(
     plan: &Plan<'a>,
+    shapes: &mut Shapes<'a>,
     variable: Xml<'a>,
     name: Name,
     section: &Section,
     program: bool,
     report: &mut Report,
 ) -> Option<VarDecl> {
-    types::judge(variable, report);
-    let at = report.span(&head(variable));
-    let (bounds, of_elements) = types::array(variable, &plan.project.types, report).unzip();
-    let array = bounds.map(|dimensions| Box::new(Array { dimensions, at: at.into() }));
-    let ty = match of_elements.map_or_else(|| types::meant(variable, &plan.project.types), Known::Type) {
-        Known::Type(ty) => ty,
-        Known::Derived(ty) => {
-            let what = say!("`{}` is of type `{}`, which has no counterpart", name.text, line(&ty));
-            report.say(&codes::NOT_CARRIED, &head(variable), what);
-            return None;
-        }
-        Known::None => {
-            let what = say!("`{}` is of a type that has no counterpart", name.text);
-            report.say(&codes::NOT_CARRIED, &head(variable), what);
-            return None;
-        }
-    };
-    let address = address(variable, report);
-    let kind = kind(section, ty, channel(variable), program);
-    let mut init = types::initial(variable, ty, report);
-    if kind == VarKind::Const && init.is_none() && array.is_none() {
-        init = Some(Expr::zero(ty, at.into()));
+    let shape = shapes.shape(variable, &name, report)?;
+    let of = if let Shape::Unknown(of) = st::element(&shape) { Some(of) } else { None };
+    if let Some(ty) = of.filter(|of| !plan.is_block(of)) {
+        let what = say!("`{}` is of type `{}`, which has no counterpart", name.text, ty.text);
+        report.say(&codes::NOT_CARRIED, &head(variable), what);
+        return None;
     }
-    if kind == VarKind::Input && section.kind == SectionKind::InOut {
+    let mut decl = shapes.declaration(variable, &name, &shape, report);
+    decl.kind = match matches!(decl.ty, Type::Fb(_)) || of.is_some() {
+        true => VarKind::Var,
+        false => kind(section, channel(variable), program),
+    };
+    if decl.kind == VarKind::Input && section.kind == SectionKind::InOut {
         let what = say!("a variable of both directions; it is an input here");
         report.say(&codes::DIFFERENT, &head(variable), what);
     }
-    Some(VarDecl {
-        array,
-        init,
-        address: address.filter(|_| kind != VarKind::Const),
-        retain: section.retain && kind == VarKind::Var,
-        comment: documentation(variable).map(Into::into),
-        ..VarDecl::new(kind, vec![name], ty, at.into())
-    })
+    decl.address = address(variable, report);
+    decl.retain = section.retain && decl.kind == VarKind::Var;
+    st::fit(&mut decl).into_iter().for_each(|p| report.put(p));
+    Some(decl)
 }
 
-fn kind(section: &Section, ty: Type, channel: Option<char>, program: bool) -> VarKind {
-    if types::is_block(Some(ty)).is_some() {
-        return VarKind::Var;
-    }
-    if section.constant && section.kind != SectionKind::External {
+/// True if the variables of a section are constants.
+pub(super) fn is_constant(section: &Section) -> bool {
+    section.constant && section.kind != SectionKind::External
+}
+
+fn kind(section: &Section, channel: Option<char>, program: bool) -> VarKind {
+    if is_constant(section) {
         return VarKind::Const;
     }
     // Names of lists of global variables say nothing about their use, except for the lists that we
@@ -163,7 +153,7 @@ fn channel(variable: Xml) -> Option<char> {
 }
 
 /// The address with its `%`. An incomplete address (`%I*`) counts as none.
-fn address(variable: Xml, report: &mut Report) -> Option<Name> {
+pub(super) fn address(variable: Xml, report: &mut Report) -> Option<Name> {
     let text = written(variable)?;
     let word = line(text.text.trim());
     if let Some(kind) = word.strip_suffix('*') {

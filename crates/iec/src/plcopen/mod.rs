@@ -3,19 +3,21 @@
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> xml -> tree -> read (project) -> units (instances, names)
+//! bytes -> xml -> tree -> read (project) -> types -> code -> units (instances, names)
 //!       graph -> flow (steps, transitions), network (values, statements)
 //!       -> bodies, actions, declare -> chart -> build (Document)
 //! ```
 //!
 //! - `tree` gives the elements of both standards the same names.
-//! - `read` finds the POUs, global variables and tasks, wherever a dialect stores them.
-//! - `units` makes an instance of each program and of each function block that is used, with the
+//! - `read` finds the POUs, types, global variables and tasks, wherever a dialect stores them.
+//! - `types` and `code` give types, functions, function blocks without a chart and all statements to the passes of
+//!   `sfc`, which make of them what they make of those of a text.
+//! - `units` makes an instance of each program and of each function block with a chart that is used, with the
 //!   meanings of the names in it.
 //! - `graph` connects the wires of a drawing, which are stored backwards; `flow` finds the steps
 //!   before and behind each transition, `network` computes the values of contacts and blocks.
-//! - `bodies` rewrites statements with the names of the document and replaces calls of the file's
-//!   own blocks by their bodies.
+//! - `bodies` rewrites statements with the names of the document and replaces calls of function blocks with a chart,
+//!   or with an instance of one, by their bodies.
 //!
 //! # What must hold
 //!
@@ -27,6 +29,7 @@ mod actions;
 mod bodies;
 mod build;
 mod chart;
+mod code;
 mod condition;
 mod declare;
 mod dialect;

@@ -192,7 +192,15 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
             return None;
         };
         let expr = self.parse(&text);
-        matches!(expr.kind, ExprKind::Path(_) | ExprKind::Direct(_)).then_some(expr)
+        if !matches!(
+            expr.kind,
+            ExprKind::Path(_) | ExprKind::Direct(_) | ExprKind::Element(..) | ExprKind::Bad
+        ) {
+            let what = say!("a `{}` writes a variable, not another expression", object.kind);
+            self.report.say(&codes::BAD_TEXT, &text.at, what);
+            return None;
+        }
+        Some(expr).filter(|e| e.kind != ExprKind::Bad)
     }
 
     fn parse(&mut self, text: &Text) -> Expr {

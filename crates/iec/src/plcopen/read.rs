@@ -1,12 +1,9 @@
 //! Reads the units of a project from XML elements: its POUs, global variables and tasks.
 
-use std::collections::HashMap;
-
 use g7_model::{Nanos, codes, say};
 use roxmltree::Document;
 
 use super::tree::{self, Xml, head, kid, kids, tag, text, word};
-use crate::nodes::line;
 use crate::report::Report;
 use crate::xml::attr::Text;
 
@@ -21,9 +18,8 @@ pub(super) struct Project<'a> {
     pub(super) runs: Vec<Run<'a>>,
     /// The shortest interval of all tasks.
     pub(super) cycle: Option<Nanos>,
-    /// The named types that are arrays or stand for another type: the element that describes each, by its name in upper
-    /// case.
-    pub(super) types: HashMap<String, Xml<'a>>,
+    /// The elements that declare types.
+    pub(super) types: Vec<Xml<'a>>,
     /// The start tag of the project.
     pub(super) at: std::ops::Range<usize>,
 }
@@ -120,19 +116,7 @@ impl<'a> Reader<'_, 'a> {
                     let section = section(child, SectionKind::Global);
                     self.project.globals.push(section);
                 }
-                "dataType" | "dataTypeDecl" if let Some((name, base)) = plain_type(child) => {
-                    if self.project.types.insert(name.to_uppercase(), base).is_some() {
-                        self.report.say(
-                            &codes::TWICE,
-                            &head(child),
-                            say!("`{}` is declared twice", line(name)),
-                        );
-                    }
-                }
-                "dataType" | "dataTypeDecl" => {
-                    let what = say!("a type of one's own; variables of it are left out");
-                    self.report.element(&codes::LEFT_OUT, "dataType", &head(child), what);
-                }
+                "dataType" | "dataTypeDecl" | "userDefinedTypeDecl" => self.project.types.push(child),
                 "accessVars" | "configVars" => {
                     let what = say!("access paths and configured addresses are left out");
                     self.report.element(&codes::LEFT_OUT, &tag(child), &head(child), what);
@@ -289,11 +273,4 @@ pub(super) fn duration(word: &str) -> Option<Nanos> {
         .then(|| format!("{total:.0}").parse().ok())
         .flatten()
         .map(Nanos::new)
-}
-
-/// The name of a type that is an array or stands for another type, and the element that describes it.
-fn plain_type(node: Xml<'_>) -> Option<(&str, Xml<'_>)> {
-    let base = kid(node, "baseType")?;
-    let plain = |n: Xml| !matches!(tag(n).as_str(), "struct" | "enum" | "pointer");
-    (kids(base).all(plain) && kid(node, "initialValue").is_none()).then_some((word(node, "name")?, base))
 }

@@ -17,7 +17,8 @@ const INSTANCE: &str = "http://www.w3.org/2001/XMLSchema-instance";
 pub(super) fn tag(node: Xml) -> String {
     let kind = node.attribute((INSTANCE, "type")).filter(|_| {
         let name = node.tag_name().name();
-        name.ends_with("Object") || name == "BodyContent"
+        name.ends_with("Object")
+            || matches!(name, "BodyContent" | "UserDefinedTypeSpec" | "InstantlyDefinedType")
     });
     let name = kind.unwrap_or(node.tag_name().name());
     let name = name.rsplit(':').next().unwrap_or(name);
@@ -28,6 +29,13 @@ pub(super) fn tag(node: Xml) -> String {
         "Parameters" => "interface".into(),
         "ResultType" => "returnType".into(),
         "Vars" => "localVars".into(),
+        "StructTypeSpec" => "struct".into(),
+        "ArrayTypeSpec" => "array".into(),
+        "EnumTypeSpec" | "EnumTypeWithNamedValueSpec" => "enum".into(),
+        "SubrangeTypeSpec" => "subrangeSigned".into(),
+        "Member" => "variable".into(),
+        "Enumerator" => "value".into(),
+        "IndexRange" => "dimension".into(),
         "InputVariable" | "OutputVariable" | "InOutVariable" if kind.is_none() => "variable".into(),
         _ => lower(name),
     }

@@ -1,82 +1,52 @@
-//! Types and initial values of variables.
+//! Types and initial values of variables, in the forms that the reader of texts has for them.
+//!
+//! ```text
+//! read (Project) -> here (Shapes) -> declare, code
+//! ```
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
+use std::ops::Range;
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, FbKind, Literal, Span, Type, UnaryOp, say};
+use g7_model::{Composed, Expr, ExprKind, Literal, Name, Span, Type, UnaryOp, VarDecl, say};
 
-use super::read::{duration, type_of};
-use super::tree::{Xml, head, kid, kids, tag, word};
+use roxmltree::NodeId;
+
+use super::read::{Project, duration, type_of};
+use super::tree::{Xml, documentation, head, kid, kids, tag, text, word};
+use super::units::name_of;
+use crate::nodes::line;
 use crate::report::Report;
-use crate::st::{self, MOST_DIMENSIONS};
-use crate::xml::attr;
+use crate::st::{self, Initial, MOST_DIMENSIONS, Shape, Types, declared};
+use crate::xml::attr::{self, Text};
 
-/// The most names that stand for each other.
-const MOST_NAMES: usize = 64;
+/// The most types within each other: names that stand for names, arrays of arrays, values within values.
+const DEEPEST: u32 = 64;
 /// The longest string that a variable may hold.
 const MOST_TEXT: u16 = 1024;
 
-/// The meaning of a declared type.
+/// The first look at a declared type.
 pub(super) enum Known {
     /// A type that G7 has.
     Type(Type),
     /// A name that the file may declare.
     Derived(String),
-    /// A type that cannot be carried over.
+    /// Anything else.
     None,
 }
 
-/// The type of a variable.
+/// The type of a variable, unless it is described in place.
 pub(super) fn known(variable: Xml) -> Known {
-    type_of(variable).map_or(Known::None, of)
+    type_of(variable).and_then(described).map_or(Known::None, plain)
 }
 
-/// The types of the file, see [`super::read::Project::types`].
-pub(super) type Types<'a> = HashMap<String, Xml<'a>>;
-
-/// The type behind the name of a plain type of the file; anything else as it is.
-fn resolved<'a>(mut node: Xml<'a>, types: &Types<'a>) -> Xml<'a> {
-    for _ in 0..MOST_NAMES {
-        let name = kid(node, "derived").and_then(|d| word(d, "name"));
-        let Some(meant) = name.and_then(|n| types.get(&n.to_uppercase())) else { break };
-        node = *meant;
-    }
-    node
+/// The element that describes the type within a `type`, `returnType` or `baseType`.
+fn described(node: Xml<'_>) -> Option<Xml<'_>> {
+    kids(node).find(|n| !matches!(&*tag(*n), "addData" | "documentation" | "initialValue" | "usingDirective"))
 }
 
-/// The type of a variable that is no array, where the file gives it a name.
-pub(super) fn meant<'a>(variable: Xml<'a>, types: &Types<'a>) -> Known {
-    type_of(variable).map_or(Known::None, |node| of(resolved(node, types)))
-}
-
-/// The bounds of a variable that is an array of a type that G7 has, and the type of its elements.
-pub(super) fn array<'a>(
-    variable: Xml<'a>,
-    types: &Types<'a>,
-    report: &mut Report,
-) -> Option<(Vec<(Expr, Expr)>, Type)> {
-    let (mut bounds, mut node) = (Vec::new(), resolved(type_of(variable)?, types));
-    while let Some(array) = kid(node, "array").filter(|_| bounds.len() < MOST_DIMENSIONS) {
-        for dimension in kids(array).filter(|n| tag(*n) == "dimension") {
-            let mut bound = |name| {
-                let text = attr::text(dimension, name)?;
-                Some(st::expression(&text.text, &|r| text.place(&r), report))
-            };
-            bounds.push((bound("lower")?, bound("upper")?));
-        }
-        node = resolved(kid(array, "baseType")?, types);
-    }
-    match of(node) {
-        Known::Type(ty) if !bounds.is_empty() && is_block(Some(ty)).is_none() => Some((bounds, ty)),
-        _ => None,
-    }
-}
-
-/// The type within a `type`, `returnType` or `baseType`.
-pub(super) fn of(node: Xml) -> Known {
-    let Some(inner) = kids(node).find(|n| !matches!(tag(*n).as_str(), "addData" | "documentation")) else {
-        return Known::None;
-    };
+/// The type that an element names by itself.
+pub(super) fn plain(inner: Xml) -> Known {
     match tag(inner).as_str() {
         "derived" => named(word(inner, "name").unwrap_or("")),
         "typeName" => named(attr::content(inner).text.trim()),
@@ -84,7 +54,7 @@ pub(super) fn of(node: Xml) -> Known {
             let length = word(inner, "length").and_then(|l| l.parse().ok()).unwrap_or(80);
             Known::Type(Type::String(length.clamp(1, MOST_TEXT)))
         }
-        "subrangeSigned" | "subrangeUnsigned" => kid(inner, "baseType").map_or(Known::None, of),
+        "array" | "struct" | "enum" | "subrangeSigned" | "subrangeUnsigned" | "pointer" => Known::None,
         other => named(other),
     }
 }
@@ -100,67 +70,382 @@ fn named(name: &str) -> Known {
     st::elementary(&upper).map_or_else(|| Known::Derived(name.to_string()), Known::Type)
 }
 
-/// Reports the parts of a type that are carried over with a difference or not at all.
-pub(super) fn judge(variable: Xml, report: &mut Report) {
-    let Some(node) = type_of(variable) else { return };
-    for inner in node.descendants().filter(|n| n.is_element()) {
+/// The types of the file.
+pub(super) struct Shapes<'a> {
+    pub(super) types: Types,
+    /// The elements that declare types, by names in upper case.
+    nodes: HashMap<String, Xml<'a>>,
+    /// The types of the members of each structure; all names in upper case.
+    members: HashMap<String, HashMap<String, Shape>>,
+    /// The types of variables that were read before.
+    of_variables: HashMap<NodeId, Option<Shape>>,
+    depth: u32,
+}
+
+impl<'a> Shapes<'a> {
+    /// Reads the types that the file declares.
+    pub(super) fn new(project: &Project<'a>, report: &mut Report) -> Shapes<'a> {
+        let mut shapes = Shapes {
+            types: Types::default(),
+            nodes: HashMap::new(),
+            members: HashMap::new(),
+            of_variables: HashMap::new(),
+            depth: 0,
+        };
+        let mut own = Vec::new();
+        for node in &project.types {
+            let Some(name) = name(*node, report) else { continue };
+            if shapes.nodes.insert(name.text.to_uppercase(), *node).is_some() {
+                let what = say!("`{}` is declared twice", name.text);
+                report.put(g7_model::Problem::new(&codes::TWICE, name.at.0, what));
+                continue;
+            }
+            // A structure is known before its members are, whose types may come later in the file.
+            if structure(*node).is_some() {
+                shapes.types.add(&name, Shape::Struct(name.clone()));
+            }
+            own.push((*node, name));
+        }
+        for (node, name) in &own {
+            match structure(*node) {
+                Some(inner) => shapes.know_members(inner, name, report),
+                None => _ = shapes.declare(*node, name, report),
+            }
+        }
+        for (node, name) in &own {
+            let Some(inner) = structure(*node) else { continue };
+            if let Some(value) = kid(*node, "initialValue") {
+                not_carried(value, report);
+            }
+            shapes.structure(inner, name, documentation(*node), report);
+        }
+        shapes
+    }
+
+    /// Declares a type that is no structure.
+    fn declare(&mut self, node: Xml<'a>, name: &Name, report: &mut Report) -> Option<Shape> {
+        if let Some(known) = self.types.get(&name.text) {
+            return Some(known.clone());
+        }
+        let shape = self.of(kid(node, "baseType").unwrap_or(node), name, report)?;
+        let value = kid(node, "initialValue").and_then(|v| self.initial(v, &shape, report));
+        let shape = match (shape, value) {
+            (shape, None) => shape,
+            (Shape::Simple(ty, _), Some(Initial::One(init))) => Shape::Simple(ty, Some(init)),
+            (Shape::Range(ty, limits, _), Some(Initial::One(init))) => Shape::Range(ty, limits, Some(init)),
+            (Shape::Enum(values, _), Some(Initial::One(init))) => Shape::Enum(values, Some(init)),
+            (shape, Some(_)) => {
+                not_carried(node, report);
+                shape
+            }
+        };
+        self.types.add(name, shape.clone());
+        Some(shape)
+    }
+
+    /// The type within a `type`, `returnType` or `baseType`. `of` is the type or variable that is declared. None if it
+    /// has no counterpart.
+    fn of(&mut self, node: Xml<'a>, of: &Name, report: &mut Report) -> Option<Shape> {
+        let inner = described(node)?;
+        if self.depth >= DEEPEST {
+            report.say(&codes::TOO_DEEP, &head(inner), say!("types within types without end"));
+            return None;
+        }
+        self.depth += 1;
+        let shape = self.of_inner(inner, of, report);
+        self.depth -= 1;
+        shape
+    }
+
+    fn of_inner(&mut self, inner: Xml<'a>, of: &Name, report: &mut Report) -> Option<Shape> {
         match tag(inner).as_str() {
-            "subrangeSigned" | "subrangeUnsigned" => {
-                let what = say!("the range of a variable is left out");
-                report.element(&codes::LEFT_OUT, "subrange", &head(inner), what);
+            "array" => self.array(inner, of, report),
+            "struct" => {
+                let name = self.types.free(of);
+                self.know_members(inner, &name, report);
+                self.structure(inner, &name, None, report);
+                Some(Shape::Struct(name))
             }
-            "wstring" | "WSTRING" => {
-                let what = say!("a text of wide characters holds UTF-8, its length in bytes");
-                report.element(&codes::DIFFERENT, "wstring", &head(inner), what);
+            "enum" => {
+                let shape = enumeration(inner, report);
+                // `add` keeps the values of a type with a name.
+                if let Shape::Enum(values, _) = &shape
+                    && !self.nodes.contains_key(&of.text.to_uppercase())
+                {
+                    self.types.values.extend(values.iter().cloned());
+                }
+                Some(shape)
             }
-            _ => {}
+            "subrangeSigned" | "subrangeUnsigned" => self.subrange(inner, of, report),
+            "pointer" => {
+                report.say(&codes::NOT_CARRIED, &head(inner), say!("there are no pointers"));
+                None
+            }
+            kind => {
+                if kind.eq_ignore_ascii_case("wstring") {
+                    let what = say!("a text of wide characters holds UTF-8, its length in bytes");
+                    report.element(&codes::DIFFERENT, "wstring", &head(inner), what);
+                }
+                match plain(inner) {
+                    Known::Type(ty) => Some(Shape::Simple(ty, None)),
+                    Known::Derived(name) => {
+                        self.derived(&Name::new(line(&name), report.span(&head(inner))), report)
+                    }
+                    Known::None => None,
+                }
+            }
+        }
+    }
+
+    /// The type of this name; a function block of the file, or nothing, is an unknown type.
+    fn derived(&mut self, name: &Name, report: &mut Report) -> Option<Shape> {
+        if let Some(known) = self.types.get(&name.text) {
+            return Some(known.clone());
+        }
+        match self.nodes.get(&name.text.to_uppercase()).copied() {
+            Some(node) => {
+                let own = self::name(node, report)?;
+                self.declare(node, &own, report)
+            }
+            None => Some(Shape::Unknown(name.clone())),
+        }
+    }
+
+    fn array(&mut self, array: Xml<'a>, of: &Name, report: &mut Report) -> Option<Shape> {
+        let mut bounds = Vec::new();
+        for dimension in array.descendants().filter(|n| n.is_element() && tag(*n) == "dimension") {
+            // The dimensions of an array within it are read with that.
+            let parent = dimension.parent_element();
+            let own = parent.is_some_and(|p| p == array || p.parent_element() == Some(array));
+            bounds.extend(range(dimension, report).filter(|_| own));
+        }
+        let element = match self.of(kid(array, "baseType")?, of, report)? {
+            Shape::Array(inner, element) => {
+                bounds.extend(inner);
+                element
+            }
+            element => Box::new(element),
+        };
+        if bounds.is_empty() || bounds.len() > MOST_DIMENSIONS {
+            let what = say!("an array has 1 to {MOST_DIMENSIONS} dimensions");
+            report.say(&codes::NOT_CARRIED, &head(array), what);
+            return None;
+        }
+        Some(Shape::Array(bounds, element))
+    }
+
+    fn subrange(&mut self, inner: Xml<'a>, of: &Name, report: &mut Report) -> Option<Shape> {
+        let limits = kid(inner, "range").and_then(|r| range(r, report));
+        match (self.of(kid(inner, "baseType")?, of, report)?, limits) {
+            (Shape::Simple(ty, init), Some(limits)) => Some(Shape::Range(ty, Box::new(limits), init)),
+            (shape, _) => Some(shape),
+        }
+    }
+
+    /// Keeps the types of the members of a structure.
+    fn know_members(&mut self, inner: Xml<'a>, name: &Name, report: &mut Report) {
+        let mut members = HashMap::new();
+        for variable in kids(inner).filter(|n| tag(*n) == "variable") {
+            let Some(member) = self::name(variable, report) else { continue };
+            let shape = type_of(variable).and_then(|t| self.of(t, &member, report));
+            let Some(shape) = shape else {
+                no_counterpart(&member, variable, report);
+                continue;
+            };
+            members.insert(member.text.to_uppercase(), shape);
+        }
+        self.members.insert(name.text.to_uppercase(), members);
+    }
+
+    /// Declares a structure whose members are known.
+    fn structure(&mut self, inner: Xml<'a>, name: &Name, comment: Option<String>, report: &mut Report) {
+        let mut members = Vec::new();
+        for variable in kids(inner).filter(|n| tag(*n) == "variable") {
+            let Some(member) = self::name(variable, report) else { continue };
+            let known = self.members.get(&name.text.to_uppercase());
+            let Some(shape) = known.and_then(|m| m.get(&member.text.to_uppercase())).cloned() else {
+                continue;
+            };
+            members.push(self.declaration(variable, &member, &shape, report));
+        }
+        self.types.add(name, Shape::Struct(name.clone()));
+        self.types.structures.push(Composed {
+            name: name.clone(),
+            comment: comment.map(Into::into),
+            members,
+            inouts: Vec::new(),
+            block: false,
+            body: None,
+            at: report.span(&head(inner)).into(),
+        });
+    }
+
+    /// The type of a variable or result; None, with a problem, if it has no counterpart.
+    pub(super) fn shape(&mut self, node: Xml<'a>, name: &Name, report: &mut Report) -> Option<Shape> {
+        if let Some(known) = self.of_variables.get(&node.id()) {
+            return known.clone();
+        }
+        let wrapper = if tag(node) == "returnType" { Some(node) } else { type_of(node) };
+        let shape = wrapper.and_then(|t| self.of(t, name, report));
+        if shape.is_none() {
+            no_counterpart(name, node, report);
+        }
+        self.of_variables.insert(node.id(), shape.clone());
+        shape
+    }
+
+    /// The names of the enumerations, in upper case.
+    pub(super) fn enumerations(&self) -> HashSet<String> {
+        let is_one = |name: &&String| matches!(self.types.get(name), Some(Shape::Enum(..)));
+        self.nodes.keys().filter(is_one).cloned().collect()
+    }
+
+    /// A variable of a type, with its initial value and its comment.
+    pub(super) fn declaration(
+        &self,
+        variable: Xml,
+        name: &Name,
+        shape: &Shape,
+        report: &mut Report,
+    ) -> VarDecl {
+        let init = kid(variable, "initialValue").and_then(|v| self.initial(v, shape, report));
+        let at = report.span(&head(variable)).into();
+        let (decl, problem) = declared(name, shape, init.as_ref(), at);
+        problem.into_iter().for_each(|p| report.put(p));
+        VarDecl { comment: documentation(variable).map(Into::into), ..decl }
+    }
+
+    /// An initial value.
+    fn initial(&self, value: Xml, shape: &Shape, report: &mut Report) -> Option<Initial> {
+        self.value(value, st::element(shape), 0, report)
+    }
+
+    /// A value of an array has the type of its elements.
+    fn value(&self, value: Xml, element: &Shape, depth: u32, report: &mut Report) -> Option<Initial> {
+        if depth > DEEPEST {
+            report.say(&codes::TOO_DEEP, &head(value), say!("values within values without end"));
+            return None;
+        }
+        if let Some(list) = kid(value, "arrayValue") {
+            let times = |v| word(v, "repetitionValue").and_then(|n| n.parse::<u32>().ok()).unwrap_or(1);
+            let mut own = Vec::new();
+            for v in values(list) {
+                own.extend(self.value(v, element, depth + 1, report).map(|one| (times(v), one)));
+            }
+            return Some(Initial::List(own));
+        }
+        if let Some(fields) = kid(value, "structValue") {
+            let members = match element {
+                Shape::Struct(of) => self.members.get(&of.text.to_uppercase()),
+                _ => None,
+            };
+            let mut own = Vec::new();
+            for v in values(fields) {
+                let Some(written) = text(v, "member") else { continue };
+                let name = Name::new(line(&written.text), report.span(&written.at));
+                let unknown = Shape::Unknown(name.clone());
+                let member = members.and_then(|m| m.get(&name.text.to_uppercase())).unwrap_or(&unknown);
+                let one = self.value(v, st::element(member), depth + 1, report);
+                own.extend(one.map(|one| (name, one)));
+            }
+            let empty = own.is_empty();
+            // At the top it says as much as no value; in a list it would shift the values behind it.
+            if empty && depth > 0 {
+                let what = say!("the value of a structure that names no member");
+                report.say(&codes::BAD_VALUE, &head(fields), what);
+            }
+            return Some(Initial::Fields(own)).filter(|_| !empty);
+        }
+        match kid(value, "simpleValue") {
+            Some(simple) => one(simple, element, report),
+            None => {
+                not_carried(value, report);
+                None
+            }
         }
     }
 }
 
-/// An initial value; that of an array is a list.
-pub(super) fn initial(variable: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
-    let value = kid(variable, "initialValue")?;
-    if let Some(list) = kid(value, "arrayValue") {
-        let mut values = Vec::new();
-        elements(list, ty, 1, report, &mut values);
-        let at = report.span(&head(list)).into();
-        return Some(Expr { kind: ExprKind::List(values), at });
-    }
-    let Some(simple) = kid(value, "simpleValue") else {
-        let what = say!("initial values of structures are not carried over");
-        report.say(&codes::NOT_CARRIED, &head(value), what);
+/// The name of a declared element; None, with a problem, if it has none.
+pub(super) fn name(node: Xml, report: &mut Report) -> Option<Name> {
+    let Some(name) = name_of(node) else {
+        report.say(&codes::LEFT_OUT, &head(node), say!("a variable without a name; it is left out"));
         return None;
     };
-    one(simple, ty, report)
+    let at = text(node, "name").map_or_else(|| head(node), |t| t.at);
+    Some(Name::new(name, report.span(&at)))
 }
 
-/// The values of the elements of an array; those of rows stand one behind the other.
-fn elements(list: Xml, ty: Type, depth: usize, report: &mut Report, values: &mut Vec<(u32, Expr)>) {
-    for value in kids(list).filter(|n| tag(*n) == "value") {
-        let times = word(value, "repetitionValue").and_then(|n| n.parse::<u32>().ok()).unwrap_or(1);
-        if let Some(row) = kid(value, "arrayValue").filter(|_| depth < MOST_DIMENSIONS) {
-            let mut inner = Vec::new();
-            elements(row, ty, depth + 1, report, &mut inner);
-            st::repeat(&inner, times, values);
-        } else if let Some(one) = kid(value, "simpleValue").and_then(|simple| one(simple, ty, report)) {
-            values.push((times, one));
-        } else {
-            let what = say!("initial values of structures are not carried over");
-            report.element(&codes::NOT_CARRIED, "value", &head(value), what);
+fn no_counterpart(name: &Name, node: Xml, report: &mut Report) {
+    let what = say!("`{}` is of a type that has no counterpart", name.text);
+    report.say(&codes::NOT_CARRIED, &head(node), what);
+}
+
+fn not_carried(node: Xml, report: &mut Report) {
+    let what = say!("initial values of a structure's or array's type are not carried over");
+    report.say(&codes::NOT_CARRIED, &head(node), what);
+}
+
+/// The element with the members of a type that is a structure.
+fn structure(node: Xml<'_>) -> Option<Xml<'_>> {
+    described(kid(node, "baseType").unwrap_or(node)).filter(|n| tag(*n) == "struct")
+}
+
+/// The least and the greatest value of a dimension or subrange.
+fn range(node: Xml, report: &mut Report) -> Option<(Expr, Expr)> {
+    let mut bound = |name| {
+        let text = attr::text(node, name)?;
+        Some(st::expression(&text.text, &|r| text.place(&r), report))
+    };
+    Some((bound("lower")?, bound("upper")?))
+}
+
+/// A value without a number has the next one (IEC 61131-3:2013, 6.4.4.4).
+fn enumeration(inner: Xml, report: &mut Report) -> Shape {
+    let (mut found, mut number) = (Vec::new(), 0);
+    for value in values(kid(inner, "values").unwrap_or(inner)) {
+        let Some(name) = name(value, report) else { continue };
+        if let Some(written) = text(value, "value").filter(|t| !t.text.trim().is_empty()) {
+            match st::expression(&written.text, &|r| written.place(&r), report).kind.whole() {
+                Some(n) => number = n,
+                None => {
+                    let what = say!("the number of an enumeration's value is written as a number");
+                    report.say(&codes::NOT_CARRIED, &written.at, what);
+                }
+            }
         }
+        found.push((name, number));
+        number = number.saturating_add(1);
     }
+    Shape::Enum(found, None)
+}
+
+fn values(node: Xml<'_>) -> impl Iterator<Item = Xml<'_>> {
+    kids(node).filter(|n| tag(*n) == "value")
 }
 
 /// One value.
-fn one(simple: Xml, ty: Type, report: &mut Report) -> Option<Expr> {
+fn one(simple: Xml, element: &Shape, report: &mut Report) -> Option<Initial> {
     let text = attr::text(simple, "value").filter(|t| !t.text.trim().is_empty())?;
     let at = report.span(&text.at);
     let word = text.text.trim();
-    if let Some(kind) = spoken(word, ty) {
-        return Some(Expr { kind, at: at.into() });
+    let ty = match element {
+        Shape::Simple(ty, _) | Shape::Range(ty, ..) => Some(*ty),
+        _ => None,
+    };
+    if let Some(kind) = ty.and_then(|ty| spoken(word, ty)) {
+        return Some(Initial::One(Expr { kind, at: at.into() }));
     }
-    Some(with_type(st::expression(&text.text, &|r| text.place(&r), report), ty, at))
+    Some(match (written(&text, report), ty) {
+        (Initial::One(e), Some(ty)) => Initial::One(with_type(e, ty, at)),
+        (other, _) => other,
+    })
+}
+
+/// A value as Structured Text: some tools write `[1, 2]` and `(a := 1)` here.
+fn written(text: &Text, report: &mut Report) -> Initial {
+    let place = |r: Range<usize>| text.place(&r);
+    st::Parser::new(&text.text, &place, report).whole_initial()
 }
 
 /// Values whose meaning depends on the type: `1` of a BOOL, strings without quotes.
@@ -186,13 +471,5 @@ fn with_type(expr: Expr, ty: Type, at: Span) -> Expr {
             Expr { kind: ExprKind::Unary(UnaryOp::Neg, Box::new(inner)), at: expr.at }
         }
         _ => expr,
-    }
-}
-
-/// The function block, if the type is one that must be called.
-pub(super) fn is_block(ty: Option<Type>) -> Option<FbKind> {
-    match ty {
-        Some(Type::Fb(kind)) => Some(kind),
-        _ => None,
     }
 }

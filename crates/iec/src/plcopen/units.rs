@@ -1,14 +1,15 @@
-//! The units that run: each program, and each instance of a function block that has a chart or
-//! memory of its own, with the meanings of the names in it.
+//! The units that run: each program, and each instance of a function block with a chart, with actions, or with an
+//! instance of such a function block, with the meanings of the names in it.
 //!
-//! G7 has no user-defined function blocks, so each instance becomes a chart with the name of the
-//! instance, which holds its variables.
+//! Each such instance becomes a chart with the name of the instance, which holds its variables. All other function
+//! blocks are those of [`super::code`].
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use g7_model::codes;
-use g7_model::{Nanos, Type, say};
+use g7_model::{Name, Nanos, Type, say};
 
+use super::code::Code;
 use super::read::{Pou, PouKind, Project, Section, SectionKind};
 use super::tree::{self, Language, Xml, head, tag, text};
 use super::types::{self, Known};
@@ -64,11 +65,17 @@ pub(super) struct Plan<'a> {
     pub(super) lists: HashSet<String>,
     /// Functions by their names in upper case.
     pub(super) functions: HashMap<String, usize>,
+    pub(super) code: Code,
 }
 
 impl<'a> Plan<'a> {
     pub(super) fn pou(&self, unit: usize) -> Option<&Pou<'a>> {
         self.units.get(unit).and_then(|u| self.project.pous.get(u.pou))
+    }
+
+    /// True if this is the name of a function block that becomes one of the document.
+    pub(super) fn is_block(&self, name: &Name) -> bool {
+        self.code.blocks.contains(&name.text.to_uppercase())
     }
 
     /// True if the body of the unit is a chart.
@@ -83,7 +90,7 @@ pub(super) fn is_chart(pou: &Pou) -> bool {
 }
 
 /// Gives every unit its place and its names.
-pub(super) fn plan<'a>(project: &'a Project<'a>, report: &mut Report) -> Plan<'a> {
+pub(super) fn plan<'a>(project: &'a Project<'a>, code: Code, report: &mut Report) -> Plan<'a> {
     let mut by_name: HashMap<String, usize> = HashMap::new();
     let mut functions = HashMap::new();
     for (index, pou) in project.pous.iter().enumerate() {
@@ -100,7 +107,8 @@ pub(super) fn plan<'a>(project: &'a Project<'a>, report: &mut Report) -> Plan<'a
         }
         by_name.insert(upper, index);
     }
-    let plan = Plan { project, units: Vec::new(), globals: Names::new(), lists: HashSet::new(), functions };
+    let (units, globals, lists) = (Vec::new(), Names::new(), HashSet::new());
+    let plan = Plan { project, units, globals, lists, functions, code };
     let mut planner = Planner { plan, by_name, charts: Taken::default(), elements: 0, full: false, report };
     planner.globals();
     planner.programs();
@@ -144,14 +152,14 @@ impl<'a> Planner<'_, 'a> {
     /// The meaning of a declared variable.
     fn meaning(&mut self, variable: Xml<'a>, home: Option<&str>, name: String, above: &[usize]) -> Meaning {
         match types::known(variable) {
-            Known::Derived(ty) => match self.by_name.get(&ty.to_uppercase()).copied() {
-                Some(pou) if self.plan.project.pous.get(pou).is_some_and(|p| p.kind == PouKind::Block) => {
+            Known::Derived(ty) => match self.own_block(&ty) {
+                Some(pou) => {
                     let long = home.map_or(name.clone(), |h| format!("{h}_{name}"));
                     let program = above.len() <= 1;
                     let chart = if program { name } else { long };
                     Meaning::Unit(self.unit(pou, chart, variable, above))
                 }
-                _ => Meaning::Var(home.map(str::to_string), name, None),
+                None => Meaning::Var(home.map(str::to_string), name, None),
             },
             Known::Type(ty) => Meaning::Var(home.map(str::to_string), name, Some(ty)),
             Known::None => Meaning::Var(home.map(str::to_string), name, None),
@@ -198,17 +206,23 @@ impl<'a> Planner<'_, 'a> {
                     .filter_map(name_of)
                     .map(|n| n.to_uppercase())
                     .filter(|u| own(u) && !self.charts.has(u) && !blocks.contains(u))
+                    .chain(self.made(index).map(|n| n.to_uppercase()).filter(|_| !several))
                     .collect();
                 self.program(index, chart, node, interval, of_file);
             }
         }
     }
 
-    /// True if a variable is an instance of one of the file's own blocks.
+    /// True if a variable is an instance of a function block that becomes a unit.
     fn is_own_block(&self, variable: Xml) -> bool {
-        let Known::Derived(ty) = types::known(variable) else { return false };
-        let pou = self.by_name.get(&ty.to_uppercase()).and_then(|p| self.plan.project.pous.get(*p));
-        pou.is_some_and(|p| p.kind == PouKind::Block)
+        matches!(types::known(variable), Known::Derived(ty) if self.own_block(&ty).is_some())
+    }
+
+    /// The function block of the file with this name whose instances become units.
+    fn own_block(&self, name: &str) -> Option<usize> {
+        let index = self.by_name.get(&name.to_uppercase()).copied()?;
+        let block = self.plan.project.pous.get(index).is_some_and(|p| p.kind == PouKind::Block);
+        (block && self.plan.code.plain.get(index) != Some(&true)).then_some(index)
     }
 
     fn program(
@@ -234,7 +248,8 @@ impl<'a> Planner<'_, 'a> {
         let project = self.plan.project;
         let alone = project.pous.iter().filter(|p| p.kind != PouKind::Function).count() == 1;
         for (index, pou) in project.pous.iter().enumerate() {
-            if pou.kind != PouKind::Block || used.contains(&index) {
+            let plain = self.plan.code.plain.get(index) == Some(&true);
+            if plain || pou.kind != PouKind::Block || used.contains(&index) {
                 continue;
             }
             let chart = pou.name.text.trim().to_string();
@@ -330,9 +345,20 @@ impl<'a> Planner<'_, 'a> {
                 names.insert(upper, meaning);
             }
         }
+        let of_file = self.plan.units.get(index).map(|u| &u.of_file);
+        for name in self.made(self.plan.units.get(index).map_or(usize::MAX, |u| u.pou)) {
+            let upper = name.to_uppercase();
+            let home = of_file.is_none_or(|o| !o.contains(&upper)).then(|| chart.to_string());
+            names.insert(upper, Meaning::Var(home, name, None));
+        }
         if let Some(unit) = self.plan.units.get_mut(index) {
             unit.names = names;
         }
+    }
+
+    /// The variables that the rewritten statements of a unit of the project need.
+    fn made(&self, pou: usize) -> impl Iterator<Item = String> + use<'_, 'a> {
+        self.plan.code.made.get(&pou).into_iter().flatten().flat_map(|d| &d.names).map(|n| n.text.to_string())
     }
 
     /// True if a declaration only refers to a global variable.

@@ -13,7 +13,7 @@ use super::blocks::{foreign, local, lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
 use crate::nodes;
 use crate::report::Report;
-use crate::st::{Section, Variable, settle};
+use crate::st::{Section, Types, Variable, settle};
 
 /// The document of a file.
 pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Document {
@@ -24,7 +24,7 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
     if let Some(scan) = paces.scan {
         items.push(Item::Cycle(scan, at.into()));
     }
-    items.extend(source.types.values.iter().map(|(name, number)| Item::Var(enumeration(name, *number))));
+    items.extend(enumerations(&source.types).map(Item::Var));
     items.extend(source.types.structures.iter().chain(&source.blocks).cloned().map(Item::Composed));
     let mut builder = Builder { source: &source, paces, globals: HashSet::new(), report };
     items.extend(builder.globals());
@@ -132,14 +132,7 @@ impl Builder<'_> {
 
     /// True if the type of a variable is known; otherwise reports it.
     fn known_type(&mut self, variable: &Variable) -> bool {
-        let Some(ty) = &variable.unknown else { return true };
-        let named = |c: &Composed| c.name.text.eq_ignore_ascii_case(&ty.text);
-        if self.source.blocks.iter().chain(&self.source.types.structures).any(named) {
-            return true;
-        }
-        let what = no_type(self.source, ty);
-        self.report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, what));
-        false
+        known_type(self.source, variable, self.report)
     }
 
     /// True if a unit is carried over as something that runs: a program, a chart, or the only
@@ -200,7 +193,7 @@ impl Builder<'_> {
     /// The variables of the file and the items that a unit becomes.
     fn unit(&mut self, unit: &Unit, alone: bool) -> (Vec<VarDecl>, Option<Item>) {
         if unit.kind == UnitKind::Function {
-            return (Vec::new(), self.function(unit).map(Item::Function));
+            return (Vec::new(), function(self.source, unit, self.report).map(Item::Function));
         }
         if !self.runs(unit) {
             let what = say!("the function block `{}` is not used; it is left out", unit.name.text);
@@ -354,33 +347,45 @@ impl Builder<'_> {
             at: t.at.into(),
         }
     }
+}
 
-    fn function(&mut self, unit: &Unit) -> Option<Function> {
-        let given = &unit.result.as_ref()?.decl;
-        if given.limits.is_some() {
-            let what = say!("the limits of the result of `{}` are not checked", unit.name.text);
-            self.report.put(Problem::new(&codes::LEFT_OUT, given.at.0, what));
-        }
-        let result = given.ty;
-        foreign(unit, self.report);
-        let mut params = Vec::new();
-        let mut locals = Vec::new();
-        for variable in &unit.vars {
-            if variable.section == Section::External || !self.known_type(variable) {
-                continue;
-            }
-            let decl = &variable.decl;
-            match variable.section {
-                Section::Input => {
-                    params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));
-                }
-                _ => locals.push(local(decl.clone(), self.report)),
-            }
-        }
-        let statements: Vec<Stmt> = unit.body.clone();
-        let body = Block { locals, statements, at: unit.at.into() };
-        Some(Function { name: unit.name.clone(), params, result, body, at: unit.at.into() })
+/// True if the type of a variable is known; otherwise reports it.
+fn known_type(source: &Source, variable: &Variable, report: &mut Report) -> bool {
+    let Some(ty) = &variable.unknown else { return true };
+    let named = |c: &Composed| c.name.text.eq_ignore_ascii_case(&ty.text);
+    if source.blocks.iter().chain(&source.types.structures).any(named) {
+        return true;
     }
+    report.put(Problem::new(&codes::NOT_CARRIED, variable.decl.at.0, no_type(source, ty)));
+    false
+}
+
+/// The function of a unit; None if it has no result.
+pub(crate) fn function(source: &Source, unit: &Unit, report: &mut Report) -> Option<Function> {
+    let given = &unit.result.as_ref()?.decl;
+    if given.limits.is_some() {
+        let what = say!("the limits of the result of `{}` are not checked", unit.name.text);
+        report.put(Problem::new(&codes::LEFT_OUT, given.at.0, what));
+    }
+    let result = given.ty;
+    foreign(unit, report);
+    let mut params = Vec::new();
+    let mut locals = Vec::new();
+    for variable in &unit.vars {
+        if variable.section == Section::External || !known_type(source, variable, report) {
+            continue;
+        }
+        let decl = &variable.decl;
+        match variable.section {
+            Section::Input => {
+                params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));
+            }
+            _ => locals.push(local(decl.clone(), report)),
+        }
+    }
+    let statements: Vec<Stmt> = unit.body.clone();
+    let body = Block { locals, statements, at: unit.at.into() };
+    Some(Function { name: unit.name.clone(), params, result, body, at: unit.at.into() })
 }
 
 /// The parts of a chart in their order, but for what stands before the first step: it follows that
@@ -397,10 +402,12 @@ fn upper(variable: &Variable) -> String {
     variable.decl.names.first().map_or(String::new(), |n| n.text.to_uppercase())
 }
 
-/// Declares a value of an enumeration as a constant.
-fn enumeration(name: &Name, number: i128) -> VarDecl {
-    let init = Some(Expr { kind: ExprKind::Literal(Literal::Int(number, None)), at: name.at });
-    VarDecl { init, ..VarDecl::new(VarKind::Const, vec![name.clone()], Type::Int, name.at) }
+/// The values of enumerations as constants.
+pub(crate) fn enumerations(types: &Types) -> impl Iterator<Item = VarDecl> {
+    types.values.iter().map(|(name, number)| {
+        let init = Some(nodes::int(*number, name.at.0));
+        VarDecl { init, ..VarDecl::new(VarKind::Const, vec![name.clone()], Type::Int, name.at) }
+    })
 }
 
 /// Some tools allow a number as a condition: it is true unless it is 0.

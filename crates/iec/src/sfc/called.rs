@@ -11,7 +11,7 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Visitor};
 use g7_model::{
-    Arg, Expr, ExprKind, Name, Path, Problem, Span, Stmt, StmtKind, Type, VarDecl, VarKind, codes, say,
+    Arg, Expr, ExprKind, Name, Path, Problem, Said, Span, Stmt, StmtKind, Type, VarDecl, VarKind, codes, say,
 };
 
 use super::unit::{Part, Source, Unit, callee, upper};
@@ -69,6 +69,11 @@ fn parameters(source: &Source, wide: &HashSet<String>) -> Parameters {
     };
     let units = source.units.iter().filter(|u| wide.contains(&upper(&u.name)));
     units.map(|u| (upper(&u.name), (u.name.clone(), of(u)))).collect()
+}
+
+/// A receptivity has no statement before it that could call the instance.
+pub(crate) fn in_receptivity() -> Said {
+    say!("a function with structures, arrays or outputs in a receptivity; call it in an action")
 }
 
 struct Calls<'a> {
@@ -207,9 +212,7 @@ impl Calls<'_> {
     /// A receptivity has no statement before it.
     fn refuse(&mut self, receptivity: &mut Expr) {
         if !self.within(receptivity).is_empty() {
-            let what =
-                say!("a function with structures, arrays or outputs in a receptivity; call it in an action");
-            self.report.put(Problem::new(&codes::NOT_CARRIED, receptivity.at.0, what));
+            self.report.put(Problem::new(&codes::NOT_CARRIED, receptivity.at.0, in_receptivity()));
         }
     }
 }

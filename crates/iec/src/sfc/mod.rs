@@ -31,12 +31,15 @@ mod unit;
 mod write;
 
 use g7_model::codes;
-use g7_model::{Document, FileId, Problem, say};
+use g7_model::{Document, FileId, Item, Problem, say};
 
 use crate::report::Report;
 use crate::st::Parser;
 use crate::xml;
 
+pub(crate) use build::{enumerations, function};
+pub(crate) use called::in_receptivity;
+pub(crate) use unit::{Part, Source, Unit, UnitKind, each};
 pub use write::export;
 
 /// The endings of such files, without the dot.
@@ -96,11 +99,23 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
         report.say(&codes::NOT_JGRAFCHART, &(0..end), what);
         return (Document::default(), report.finish());
     }
-    enabled::expand(&mut source, &mut report);
-    functions::expand(&mut source, &mut report);
-    inouts::expand(&mut source, &mut report);
+    rewrite(&mut source, &mut report);
     instances::expand(&mut source, &mut report);
     blocks::expand(&mut source, &mut report);
     let document = build::document(source, text.len(), &mut report);
     (document, report.finish())
+}
+
+/// Rewrites calls with `EN`, functions, and in-outs in the forms that a document has for them.
+pub(crate) fn rewrite(source: &mut Source, report: &mut Report) {
+    enabled::expand(source, report);
+    functions::expand(source, report);
+    inouts::expand(source, report);
+}
+
+/// Makes function blocks of the document of those that are used, which leave the list of units. Gives the types and
+/// function blocks.
+pub(crate) fn types(source: &mut Source, report: &mut Report) -> Vec<Item> {
+    blocks::expand(source, report);
+    source.types.structures.iter().chain(&source.blocks).cloned().map(Item::Composed).collect()
 }

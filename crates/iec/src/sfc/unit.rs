@@ -11,24 +11,24 @@ use crate::st::{Types, Variable};
 
 /// The whole file.
 #[derive(Debug, Default)]
-pub(super) struct Source {
-    pub(super) units: Vec<Unit>,
-    pub(super) globals: Vec<Variable>,
-    pub(super) tasks: Vec<Task>,
-    pub(super) instances: Vec<Instance>,
-    pub(super) resources: Vec<Resource>,
-    pub(super) types: Types,
+pub(crate) struct Source {
+    pub(crate) units: Vec<Unit>,
+    pub(crate) globals: Vec<Variable>,
+    pub(crate) tasks: Vec<Task>,
+    pub(crate) instances: Vec<Instance>,
+    pub(crate) resources: Vec<Resource>,
+    pub(crate) types: Types,
     /// The function blocks without a chart that are used.
-    pub(super) blocks: Vec<Composed>,
+    pub(crate) blocks: Vec<Composed>,
     /// The global variables that these use.
-    pub(super) externals: Vec<Variable>,
+    pub(crate) externals: Vec<Variable>,
     /// Statements that run before all programs.
-    pub(super) before: Vec<Stmt>,
+    pub(crate) before: Vec<Stmt>,
 }
 
 /// The kinds of program organisation unit.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum UnitKind {
+pub(crate) enum UnitKind {
     Program,
     FunctionBlock,
     Function,
@@ -36,80 +36,80 @@ pub(super) enum UnitKind {
 
 /// A program organisation unit.
 #[derive(Clone, Debug)]
-pub(super) struct Unit {
-    pub(super) kind: UnitKind,
-    pub(super) name: Name,
+pub(crate) struct Unit {
+    pub(crate) kind: UnitKind,
+    pub(crate) name: Name,
     /// The result of a function, with its name.
-    pub(super) result: Option<Variable>,
-    pub(super) vars: Vec<Variable>,
-    pub(super) parts: Vec<Part>,
+    pub(crate) result: Option<Variable>,
+    pub(crate) vars: Vec<Variable>,
+    pub(crate) parts: Vec<Part>,
     /// The statements of a unit without a chart.
-    pub(super) body: Vec<Stmt>,
+    pub(crate) body: Vec<Stmt>,
     /// Statements behind the charts that the unit calls.
-    pub(super) behind: Vec<Stmt>,
-    pub(super) body_at: Range<usize>,
+    pub(crate) behind: Vec<Stmt>,
+    pub(crate) body_at: Range<usize>,
     /// A pragma with statements of another language.
-    pub(super) foreign: Option<Span>,
-    pub(super) at: Span,
+    pub(crate) foreign: Option<Span>,
+    pub(crate) at: Span,
 }
 
 /// An element of a chart.
 #[derive(Clone, Debug)]
-pub(super) enum Part {
+pub(crate) enum Part {
     Step { name: Name, initial: bool, associations: Vec<Association>, at: Span },
     Transition(Box<Transition>),
     Action { name: Name, body: Vec<Stmt>, at: Span },
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct Transition {
-    pub(super) label: Option<Name>,
-    pub(super) priority: Option<u32>,
-    pub(super) from: Vec<Name>,
-    pub(super) to: Vec<Name>,
-    pub(super) receptivity: Expr,
-    pub(super) at: Span,
+pub(crate) struct Transition {
+    pub(crate) label: Option<Name>,
+    pub(crate) priority: Option<u32>,
+    pub(crate) from: Vec<Name>,
+    pub(crate) to: Vec<Name>,
+    pub(crate) receptivity: Expr,
+    pub(crate) at: Span,
 }
 
 /// An action of a step with its qualifier.
 #[derive(Clone, Debug)]
-pub(super) struct Association {
-    pub(super) target: Expr,
-    pub(super) qualifier: Qualifier,
-    pub(super) time: Option<Expr>,
-    pub(super) at: Span,
+pub(crate) struct Association {
+    pub(crate) target: Expr,
+    pub(crate) qualifier: Qualifier,
+    pub(crate) time: Option<Expr>,
+    pub(crate) at: Span,
 }
 
 /// A resource of a configuration, with what it has of its own.
 #[derive(Debug)]
-pub(super) struct Resource {
-    pub(super) name: Name,
-    pub(super) globals: Vec<Variable>,
-    pub(super) tasks: Vec<Task>,
-    pub(super) instances: Vec<Instance>,
+pub(crate) struct Resource {
+    pub(crate) name: Name,
+    pub(crate) globals: Vec<Variable>,
+    pub(crate) tasks: Vec<Task>,
+    pub(crate) instances: Vec<Instance>,
 }
 
 /// A task of a resource.
 #[derive(Debug)]
-pub(super) struct Task {
-    pub(super) name: Name,
+pub(crate) struct Task {
+    pub(crate) name: Name,
     /// How often it runs.
-    pub(super) interval: Option<Nanos>,
+    pub(crate) interval: Option<Nanos>,
 }
 
 /// A program that a resource runs.
 #[derive(Debug)]
-pub(super) struct Instance {
-    pub(super) task: Option<Name>,
-    pub(super) unit: Name,
+pub(crate) struct Instance {
+    pub(crate) task: Option<Name>,
+    pub(crate) unit: Name,
     /// Variables of the program with the address or global variable that each is connected to.
-    pub(super) links: Vec<(Name, Expr)>,
-    pub(super) at: Span,
+    pub(crate) links: Vec<(Name, Expr)>,
+    pub(crate) at: Span,
 }
 
 impl Source {
     /// The names of all units and variables.
-    pub(super) fn names(&self) -> Taken {
+    pub(crate) fn names(&self) -> Taken {
         let mut taken = Taken::default();
         let variables = self.globals.iter().chain(self.units.iter().flat_map(|u| &u.vars));
         variables.flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
@@ -120,20 +120,20 @@ impl Source {
 
 impl Unit {
     /// The names of its variables, and its own.
-    pub(super) fn names(&self) -> Taken {
+    pub(crate) fn names(&self) -> Taken {
         let mut taken = Taken::default();
         self.vars.iter().flat_map(|v| &v.decl.names).for_each(|n| _ = taken.take(&n.text));
         taken.take(&self.name.text);
         taken
     }
 
-    pub(super) fn is_chart(&self) -> bool {
+    pub(crate) fn is_chart(&self) -> bool {
         self.parts.iter().any(|p| matches!(p, Part::Step { .. } | Part::Transition(_)))
     }
 }
 
 /// Visits all statements and receptivities of a unit.
-pub(super) fn each(unit: &mut Unit, v: &mut impl Visitor) {
+pub(crate) fn each(unit: &mut Unit, v: &mut impl Visitor) {
     visit_mut::stmts(&mut unit.body, v);
     for part in &mut unit.parts {
         match part {
@@ -145,7 +145,7 @@ pub(super) fn each(unit: &mut Unit, v: &mut impl Visitor) {
 }
 
 /// Renames variables; the old names are in upper case.
-pub(super) struct Renamed<'n>(pub(super) &'n HashMap<String, String>);
+pub(crate) struct Renamed<'n>(pub(crate) &'n HashMap<String, String>);
 
 impl Visitor for Renamed<'_> {
     fn path(&mut self, path: &mut Path, _: Use, _: Span) {
@@ -158,12 +158,12 @@ impl Visitor for Renamed<'_> {
 }
 
 /// A name as it is compared.
-pub(super) fn upper(name: &Name) -> String {
+pub(crate) fn upper(name: &Name) -> String {
     name.text.to_uppercase()
 }
 
 /// The name of the function that an expression or a statement calls, in upper case.
-pub(super) fn callee(path: &Path) -> Option<String> {
+pub(crate) fn callee(path: &Path) -> Option<String> {
     match path.names.as_slice() {
         [name] => Some(upper(name)),
         _ => None,

@@ -1,7 +1,7 @@
 //! Declarations of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, Name, Type, VarDecl, VarKind, say};
+use g7_model::{Expr, Name, Problem, Type, VarDecl, VarKind, say};
 
 use super::initial::{declared, element};
 use super::lex::Kind;
@@ -159,15 +159,8 @@ impl Parser<'_> {
             problem.into_iter().for_each(|p| self.report.put(p));
             let unknown = if let Shape::Unknown(of) = element(&shape) { Some(of.clone()) } else { None };
             decl.kind = kind(head, &decl, address.as_ref());
-            if decl.kind == VarKind::Const && decl.init.is_none() && decl.array.is_none() && decl.of.is_none()
-            {
-                decl.init = Some(Expr::zero(decl.ty, at));
-            }
-            decl.address = address.filter(|_| decl.kind != VarKind::Const);
-            if decl.kind == VarKind::Input && decl.limits.take().is_some() {
-                let what = say!("the limits of the input `{}` are not checked", name.text);
-                self.report.put(g7_model::Problem::new(&codes::LEFT_OUT, at.0, what));
-            }
+            decl.address = address;
+            fit(&mut decl).into_iter().for_each(|p| self.report.put(p));
             decl.retain = head.retain && decl.kind == VarKind::Var;
             decl.comment.clone_from(&comment);
             found.push(Variable { section: head.section, decl, unknown });
@@ -222,6 +215,20 @@ impl Parser<'_> {
         let text = text.split_whitespace().collect::<Vec<_>>().join(" ");
         (!text.is_empty()).then(|| text.into())
     }
+}
+
+/// Gives a declaration the form that its kind asks for: a constant has a value and no address, an input no limits.
+pub(crate) fn fit(decl: &mut VarDecl) -> Option<Problem> {
+    if decl.kind == VarKind::Const {
+        decl.address = None;
+        if decl.init.is_none() && decl.array.is_none() && decl.of.is_none() {
+            decl.init = Some(Expr::zero(decl.ty, decl.at));
+        }
+    }
+    decl.limits.take_if(|_| decl.kind == VarKind::Input)?;
+    let name = decl.names.first().map_or("", |n| &*n.text);
+    let what = say!("the limits of the input `{name}` are not checked");
+    Some(Problem::new(&codes::LEFT_OUT, decl.at.0, what))
 }
 
 /// The kind of a variable, from its section or its address.

@@ -9,7 +9,7 @@ use super::shape::Shape;
 
 impl Parser<'_> {
     /// Reads an initial value.
-    pub(super) fn initial(&mut self) -> Initial {
+    pub(crate) fn initial(&mut self) -> Initial {
         let start = self.token().start;
         if self.at("[") {
             return self.array_value(start, "[", "]");
@@ -76,7 +76,7 @@ impl Parser<'_> {
 
 /// An initial value as written.
 #[derive(Clone, Debug)]
-pub(super) enum Initial {
+pub(crate) enum Initial {
     One(Expr),
     /// Values, each with the number of its repetitions.
     List(Vec<(u32, Initial)>),
@@ -135,7 +135,7 @@ pub(crate) fn repeat(row: &[(u32, Expr)], times: u32, into: &mut Vec<(u32, Expr)
 }
 
 /// The type of the elements of an array; of anything else, that itself.
-pub(super) fn element(shape: &Shape) -> &Shape {
+pub(crate) fn element(shape: &Shape) -> &Shape {
     match shape {
         Shape::Array(_, element) => element,
         other => other,
@@ -143,7 +143,7 @@ pub(super) fn element(shape: &Shape) -> &Shape {
 }
 
 /// The declaration of a variable or member with its type and value.
-pub(super) fn declared(
+pub(crate) fn declared(
     name: &Name,
     shape: &Shape,
     init: Option<&Initial>,

@@ -36,14 +36,14 @@ use crate::report::Report;
 /// Prints an expression as an operand of a list or a contact of a rung.
 pub type Spelling<'a> = &'a dyn Fn(&Expr) -> String;
 
-pub(crate) use decl::{Section, Variable};
-pub(crate) use initial::repeat;
+pub(crate) use decl::{Section, Variable, fit};
+pub(crate) use initial::{Initial, declared, element};
 pub(crate) use lex::Kind;
 pub use parse::Places;
 pub(crate) use parse::{Parser, foreign};
 pub use print::{Types as Known, Writer};
 pub use settle::settle;
-pub(crate) use shape::Types;
+pub(crate) use shape::{Shape, Types};
 pub(crate) use types::MOST_DIMENSIONS;
 pub use types::elementary;
 

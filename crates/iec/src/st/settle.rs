@@ -152,7 +152,7 @@ impl<'a> Settler<'a> {
         }
     }
 
-    /// Settles `Step.X` and `Step.T`, perhaps preceded by the name of a chart.
+    /// Settles `Step.X` and `Step.t`, perhaps preceded by the name of a chart.
     fn step_path(&self, path: &mut Path) -> bool {
         let (chart, step, member) = match path.names.as_mut_slice() {
             [step, member] => (None, step, member),
@@ -165,7 +165,7 @@ impl<'a> Settler<'a> {
         }
         chart.into_iter().for_each(|c| self.name(c));
         self.step(step);
-        member.text = capital.into();
+        member.text = if capital == "T" { "t" } else { "X" }.into();
         true
     }
 

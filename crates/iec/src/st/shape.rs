@@ -39,12 +39,12 @@ impl Types {
         self.shapes.insert(name.text.to_ascii_uppercase(), shape);
     }
 
-    pub(super) fn get(&self, name: &str) -> Option<&Shape> {
+    pub(crate) fn get(&self, name: &str) -> Option<&Shape> {
         self.shapes.get(&name.to_ascii_uppercase())
     }
 
     /// A name for the structure of a variable that has no type with a name.
-    pub(super) fn free(&self, variable: &Name) -> Name {
+    pub(crate) fn free(&self, variable: &Name) -> Name {
         let mut text = format!("{}_type", variable.text);
         while self.get(&text).is_some() {
             text.push('_');

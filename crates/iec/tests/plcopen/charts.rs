@@ -78,15 +78,20 @@ fn blocks_of_the_file_become_charts_and_statements() {
         "blocks.xml",
         r#"
 profile iec61131 { no-final-scan }
+function block Adder {
+  input A : INT
+  input B : INT
+  output S : INT
+  body { S := A + B }
+}
 input Go : BOOL at %IX0.0
 input Safe : BOOL at %IX0.1
 output Turn : BOOL at %QX0.0
+var Sum : Adder
 var Result : INT
 pre {
   Second.Called := FALSE
-  Sum.A := Result
-  Sum.B := 3
-  Sum.S := Sum.A + Sum.B
+  Sum(Result, 3)
   Result := Sum.S
   Feeder.Start := Go
   Turn := Feeder.Turning
@@ -118,7 +123,6 @@ chart Second {
   action Run_active { IF Called THEN Turning := TRUE END_IF }
   pre { IF SFCReset THEN INITCHART(Second) END_IF }
 }
-chart Sum { var A : INT  var B : INT  var S : INT }
 "#,
     );
     // A block without use; one that is called on a condition; a value that is read

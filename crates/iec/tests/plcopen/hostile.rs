@@ -140,14 +140,30 @@ fn blocks_that_multiply_are_bounded() {
              <variable name='y'>{next}</variable></localVars></interface><body><ST>x(); y();</ST></body></pou>"
         )
     };
-    let blocks: String = (0..15).map(block).collect();
+    // A block with an action becomes a chart in each instance, and with it those that hold one.
+    let last = "<pou name='B15' pouType='functionBlock'><interface/><actions><action name='A'><body><ST/></body></action>\
+                </actions><body><ST/></body></pou>";
+    let plain: String = (0..15).map(block).collect();
+    let blocks = format!("{plain}{last}");
     let main = "<pou name='P' pouType='program'><interface><localVars><variable name='b'><type><derived name='B0'/></type>\
                 </variable></localVars></interface><body><ST>b();</ST></body></pou>";
     assert!(codes_of(&format!("{blocks}{main}")).contains(&"G0008"));
     let own = "<pou name='B' pouType='functionBlock'><interface><localVars><variable name='b'><type><derived name='B'/></type>\
                </variable></localVars></interface><body><ST>b();</ST></body></pou>";
     let main = main.replace("'B0'", "'B'");
-    assert!(codes_of(&format!("{own}{main}")).contains(&"G0604"));
+    assert!(refused(&format!("{own}{main}")).contains(&"G0216"));
+    let main = main.replace("'B'", "'B0'");
+    let leaf = last.replace("<actions><action name='A'><body><ST/></body></action></actions>", "");
+    assert!(refused(&format!("{plain}{leaf}{main}")).contains(&"G0008"));
+}
+
+/// The codes with which a file of these units is refused as a program.
+fn refused(pous: &str) -> Vec<&'static str> {
+    let file = format!(
+        "<project xmlns='http://www.plcopen.org/xml/tc6_0201'><types><pous>{pous}</pous></types></project>"
+    );
+    let (_, problems) = g7_compile::compile(&import(file.as_bytes()).0);
+    problems.iter().map(|p| p.code.id).collect()
 }
 
 #[test]

@@ -12,4 +12,5 @@ mod problems;
 mod show;
 #[path = "../../../exchange/tests/support/mod.rs"]
 mod support;
+mod types;
 mod write;

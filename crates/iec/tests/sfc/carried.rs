@@ -38,7 +38,7 @@ fn a_program_with_everything() {
            step Down { S ram  P1 Count  L 1.5s Lamp  D 2s oil }
            step Up { R ram  SL 500ms oil }
            go: Rest -> Down when start and not door priority 2
-           Down -> Up when Depth >= LIMIT_OF or Down.T > 3s
+           Down -> Up when Depth >= LIMIT_OF or Down.t > 3s
            Up -> Rest when top and not (door and start)
            action Count {
              strokes := strokes + 1
@@ -109,7 +109,7 @@ fn several_programs_have_their_own_pace() {
            initial step Wait
            step Take { R full }
            Wait -> Take when full
-           Take -> Wait when not full and Take.T >= 1s
+           Take -> Wait when not full and Take.t >= 1s
          }",
     );
 }
@@ -121,9 +121,9 @@ fn names_have_the_letters_of_their_declaration() {
          TRANSITION FROM init TO ON := INIT; END_TRANSITION \
          TRANSITION FROM on TO Init := init.x AND ON.t > T#1s; END_TRANSITION END_PROGRAM",
     );
-    // A step and a variable of one name: `.X` and `.T` are of the step.
+    // A step and a variable of one name: `.X` and `.t` are of the step.
     assert!(text.contains("`INIT` -> On when Init\n"), "{text}");
-    assert!(text.contains("On -> `INIT` when INIT.X and On.T > 1s"), "{text}");
+    assert!(text.contains("On -> `INIT` when INIT.X and On.t > 1s"), "{text}");
 }
 
 #[test]

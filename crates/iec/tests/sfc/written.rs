@@ -32,7 +32,7 @@ chart Pump {
   step Run { S motor  D 2s lamp  N Watch }
   step Off { R motor }
   Rest -> Run when go and not stop
-  Run -> Off when level >= 0.5 or Run.T > 1m30s or t.Q priority 1
+  Run -> Off when level >= 0.5 or Run.t > 1m30s or t.Q priority 1
   Off -> Rest when n > 2
   action Tally { n := n + 1 }
   action Watch {
@@ -158,7 +158,7 @@ fn programs_beside_a_chart_share_global_variables() {
         "post {",
         "chart H every 60ms {",
         "Step1 -> Step2 when a_rise and b_timed",
-        "Step2 -> Step1 when Event_fall or Step2.X and Step2.T >= 5s",
+        "Step2 -> Step1 when Event_fall or Step2.X and Step2.t >= 5s",
     ] {
         assert!(text.contains(part), "{part} in {text}\n{}", written.text);
     }
@@ -179,7 +179,7 @@ var s : STRING
 chart G {
   step Before
   initial step Rest { N { q := Late.X } }
-  Rest -> Before when Late.X or Late.T > 2s
+  Rest -> Before when Late.X or Late.t > 2s
   action Look { q := Last.X  s := 'ä (* ö *) €' }
   step Late { N Look }
   Before -> Late when a
@@ -264,7 +264,7 @@ fn a_step_that_is_not_read_may_have_the_name_of_a_variable() {
     assert_eq!(problems, []);
     assert_eq!(g7_syntax::print(&after, None), g7_syntax::print(&before, None), "{}", written.text);
     // `Init.X` would be a member of the variable.
-    let written = export(&document(&TWINS.replace("when not init", "when not init and Init.T > 1s")));
+    let written = export(&document(&TWINS.replace("when not init", "when not init and Init.t > 1s")));
     assert!(written.text.contains("STEP G_Init:") && written.text.contains("G_Init.T"), "{}", written.text);
     assert!(written.problems.iter().any(|p| p.what.contains("`Init` is called `G_Init` there")));
 }

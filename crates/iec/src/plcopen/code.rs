@@ -1,0 +1,405 @@
+//! The functions, the function blocks without a chart, and the statements of all units, in the forms that the reader of
+//! texts makes of them: calls with `EN`, functions with outputs, in-outs, `TIME()`.
+//!
+//! ```text
+//! read (Project), types (Shapes) -> here (Code) -> units (names) -> bodies (statements) -> build
+//!                                   sfc (rewrite)
+//! ```
+//!
+//! Statements keep the names of the file; `bodies` gives those of charts and programs the names of the document. A
+//! function block with a chart, with actions, or with an instance of such a function block stays with `units`: each
+//! instance of it becomes a chart.
+
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+use g7_model::codes;
+use g7_model::visit_mut::{Use, Visitor};
+use g7_model::{Item, Name, Path, Problem, Span, Stmt, VarDecl, VarKind, say};
+use roxmltree::NodeId;
+
+use super::declare::is_constant;
+use super::network;
+use super::read::{Pou, PouKind, Project, SectionKind};
+use super::tree::{self, Language, Xml, head, kids, tag};
+use super::types::{self, Known, Shapes};
+use super::units::{name_of, variables};
+use crate::il;
+use crate::nodes::{bare, line};
+use crate::report::Report;
+use crate::sfc::{self, Part, Source, Unit, UnitKind};
+use crate::st::{self, Section, Shape, Variable};
+use crate::xml::attr;
+
+/// What the code of a project becomes.
+#[derive(Default)]
+pub(super) struct Code {
+    /// True for each unit of the project that is a function or a function block without a chart.
+    pub(super) plain: Vec<bool>,
+    /// Constants, types and function blocks.
+    pub(super) items: Vec<Item>,
+    pub(super) functions: Vec<Item>,
+    /// The names of the function blocks among these, in upper case.
+    pub(super) blocks: HashSet<String>,
+    /// Variables of the file that the rewritten statements need.
+    pub(super) globals: Vec<VarDecl>,
+    /// Statements that run before all others.
+    pub(super) before: Vec<Stmt>,
+    /// Variables that the rewritten statements of each unit of the project need.
+    pub(super) made: HashMap<usize, Vec<VarDecl>>,
+    /// The functions that became function blocks, in upper case.
+    pub(super) wide: HashSet<String>,
+    /// The types that are enumerations, in upper case: `Mode.Off` is `Off`.
+    pub(super) enumerations: HashSet<String>,
+    /// The rewritten statements of each body.
+    bodies: HashMap<NodeId, Vec<Stmt>>,
+}
+
+impl Code {
+    /// The statements of a body in any language except SFC.
+    pub(super) fn body(&self, language: Language, node: Xml, report: &mut Report) -> Vec<Stmt> {
+        let known = self.bodies.get(&node.id()).cloned();
+        known.unwrap_or_else(|| statements(language, node, report))
+    }
+}
+
+/// Reads the code of a project.
+pub(super) fn read<'a>(project: &Project<'a>, shapes: &mut Shapes<'a>, report: &mut Report) -> Code {
+    let plain = plain(project);
+    let used = used(project, &plain, report);
+    let mut reader = Reader { project, shapes, report };
+    let mut source = Source { globals: reader.globals(), ..Source::default() };
+    let own_globals = source.globals.len();
+    let mut origins = Vec::new();
+    for (index, pou) in project.pous.iter().enumerate() {
+        let plain = plain.get(index) == Some(&true);
+        if plain && pou.kind == PouKind::Block && !used.contains(&index) {
+            continue;
+        }
+        let (unit, nodes) = reader.unit(pou, plain);
+        origins.push((unit.name.text.to_uppercase(), Origin { index, variables: unit.vars.len(), nodes }));
+        source.units.push(unit);
+    }
+    let enumerations = shapes.enumerations();
+    let mut prefixes = Prefixes::of(project, &enumerations);
+    let of_text = |u: &&mut Unit| u.kind != UnitKind::Program;
+    source.units.iter_mut().filter(of_text).for_each(|unit| prefixes.leave_out(unit));
+    source.types = std::mem::take(&mut shapes.types);
+    let functions: HashSet<String> = source
+        .units
+        .iter()
+        .filter(|u| u.kind == UnitKind::Function)
+        .map(|u| u.name.text.to_uppercase())
+        .collect();
+    sfc::rewrite(&mut source, report);
+    let mut code = Code { plain, enumerations, ..Code::default() };
+    code.items.extend(sfc::enumerations(&source.types).map(Item::Var));
+    let is_wide =
+        |u: &&Unit| u.kind == UnitKind::FunctionBlock && functions.contains(&u.name.text.to_uppercase());
+    code.wide = source.units.iter().filter(is_wide).map(|u| u.name.text.to_uppercase()).collect();
+    code.items.extend(sfc::types(&mut source, report));
+    code.blocks = source.blocks.iter().map(|b| b.name.text.to_uppercase()).collect();
+    code.globals = source.globals.drain(own_globals..).map(|v| v.decl).collect();
+    code.before = std::mem::take(&mut source.before);
+    let mut origins: HashMap<String, Origin> = origins.into_iter().collect();
+    for unit in &source.units {
+        match unit.kind {
+            UnitKind::Function => code.functions.extend(function(&source, unit, report)),
+            UnitKind::FunctionBlock => {
+                let what = say!("the function block `{}` is not used; it is left out", unit.name.text);
+                report.put(Problem::new(&codes::LEFT_OUT, unit.name.at.0, what));
+            }
+            UnitKind::Program => {
+                if let Some(origin) = origins.remove(&unit.name.text.to_uppercase()) {
+                    code.keep(unit, origin);
+                }
+            }
+        }
+    }
+    code.globals.extend(externals(project, &source, report));
+    shapes.types = source.types;
+    code
+}
+
+/// Where a unit comes from: its number in the project, how many variables it declares, and its bodies.
+struct Origin {
+    index: usize,
+    variables: usize,
+    nodes: Vec<NodeId>,
+}
+
+impl Code {
+    /// Keeps the rewritten statements of a unit and the variables that they need.
+    fn keep(&mut self, unit: &Unit, origin: Origin) {
+        let made: Vec<VarDecl> = unit.vars.iter().skip(origin.variables).map(|v| v.decl.clone()).collect();
+        if !made.is_empty() {
+            self.made.insert(origin.index, made);
+        }
+        for (part, node) in unit.parts.iter().zip(origin.nodes) {
+            if let Part::Action { body, .. } = part {
+                self.bodies.insert(node, body.clone());
+            }
+        }
+    }
+}
+
+fn function(source: &Source, unit: &Unit, report: &mut Report) -> Option<Item> {
+    let made = sfc::function(source, unit, report);
+    if made.is_none() {
+        let what = say!("the function `{}` has no result that can be carried over", unit.name.text);
+        report.put(Problem::new(&codes::NOT_CARRIED, unit.name.at.0, what));
+    }
+    made.map(Item::Function)
+}
+
+/// The variables that function blocks expect in the file and nobody declares.
+fn externals(project: &Project, source: &Source, report: &mut Report) -> Vec<VarDecl> {
+    let globals = project.globals.iter().flat_map(|s| &s.variables).filter_map(|v| name_of(*v));
+    let mut known: HashSet<String> = globals.map(|n| n.to_uppercase()).collect();
+    let mut made = Vec::new();
+    for Variable { decl, .. } in &source.externals {
+        let Some(name) = decl.names.first() else { continue };
+        if known.insert(name.text.to_uppercase()) {
+            let what = say!("no global variable is called `{}`; it is one of its own", name.text);
+            report.put(Problem::new(&codes::OPEN_LINK, decl.at.0, what));
+            made.push(decl.clone());
+        }
+    }
+    made
+}
+
+/// The units that are functions, or function blocks with nothing but statements.
+fn plain(project: &Project) -> Vec<bool> {
+    let charts = |pou: &Pou| {
+        let body = |node: &Xml| matches!(tree::body(*node), Some((Language::Sfc, _)));
+        body(&pou.node) || !pou.actions.is_empty() || !pou.transitions.is_empty()
+    };
+    // The only function block of a file without programs runs as a program.
+    let alone = project.pous.iter().filter(|p| p.kind != PouKind::Function).count() == 1;
+    let mut holders: HashMap<String, Vec<usize>> = HashMap::new();
+    for (index, pou) in project.pous.iter().enumerate() {
+        for name in contained(pou) {
+            holders.entry(name).or_default().push(index);
+        }
+    }
+    let mut plain: Vec<bool> = project.pous.iter().map(|p| p.kind != PouKind::Program).collect();
+    let blocks = project.pous.iter().enumerate().filter(|(_, p)| p.kind == PouKind::Block);
+    let mut open: Vec<usize> = blocks.filter(|(_, p)| alone || charts(p)).map(|(i, _)| i).collect();
+    while let Some(index) = open.pop() {
+        if plain.get_mut(index).is_some_and(|p| std::mem::replace(p, false)) {
+            let name = project.pous.get(index).map(|p| p.name.text.trim().to_uppercase());
+            open.extend(name.and_then(|n| holders.remove(&n)).unwrap_or_default());
+        }
+    }
+    plain
+}
+
+/// The types of a unit's variables that the file may declare, in upper case, also those of arrays.
+fn contained(pou: &Pou) -> BTreeSet<String> {
+    let of = |v: Xml<'_>| -> Vec<String> { named_within(v).collect() };
+    variables(pou).flat_map(of).collect()
+}
+
+/// The names of types within the type of a variable, in upper case.
+fn named_within<'a>(variable: Xml<'a>) -> impl Iterator<Item = String> + use<'a> {
+    let within = super::read::type_of(variable).into_iter().flat_map(|t| t.descendants());
+    within.filter(|n| n.is_element()).filter_map(|n| match types::plain(n) {
+        Known::Derived(name) => Some(name.to_uppercase()),
+        Known::Type(_) | Known::None => None,
+    })
+}
+
+/// The function blocks without a chart that are used. Reports the others.
+fn used(project: &Project, plain: &[bool], report: &mut Report) -> HashSet<usize> {
+    let is_block = |i: usize| {
+        plain.get(i) == Some(&true) && project.pous.get(i).is_some_and(|p| p.kind == PouKind::Block)
+    };
+    let mut by_name: HashMap<String, usize> = HashMap::new();
+    for (index, pou) in project.pous.iter().enumerate().rev() {
+        by_name.insert(pou.name.text.trim().to_uppercase(), index);
+    }
+    let globals = project.globals.iter().flat_map(|s| &s.variables).flat_map(|v| named_within(*v));
+    let mut open: Vec<String> = globals.collect();
+    for node in &project.types {
+        open.extend(node.descendants().filter(|n| tag(*n) == "variable").flat_map(named_within));
+    }
+    let running = project.pous.iter().enumerate().filter(|(i, _)| !is_block(*i));
+    open.extend(running.flat_map(|(_, pou)| contained(pou)));
+    let mut used = HashSet::new();
+    while let Some(name) = open.pop() {
+        let Some(index) = by_name.get(&name).copied().filter(|i| is_block(*i)) else { continue };
+        if used.insert(index) {
+            open.extend(project.pous.get(index).map(contained).unwrap_or_default());
+        }
+    }
+    for (index, pou) in project.pous.iter().enumerate() {
+        if is_block(index) && !used.contains(&index) {
+            let what = say!("the function block `{}` is not used; it is left out", line(&pou.name.text));
+            report.say(&codes::LEFT_OUT, &head(pou.node), what);
+        }
+    }
+    used
+}
+
+/// The statements of a body, with the names of the file.
+fn statements(language: Language, node: Xml, report: &mut Report) -> Vec<Stmt> {
+    let text = attr::content(node);
+    match language {
+        Language::St => st::statements(&text.text, &|r| text.place(&r), report),
+        Language::Il => il::statements(&text.text, &|r| text.place(&r), report),
+        Language::Ld | Language::Fbd => network::statements(node, report),
+        Language::Sfc => Vec::new(),
+    }
+}
+
+struct Reader<'r, 'a> {
+    project: &'r Project<'a>,
+    shapes: &'r mut Shapes<'a>,
+    report: &'r mut Report,
+}
+
+impl<'a> Reader<'_, 'a> {
+    fn globals(&mut self) -> Vec<Variable> {
+        let project = self.project;
+        let variables = project.globals.iter().flat_map(|s| &s.variables);
+        variables.filter_map(|v| self.typed(*v, Section::Global)).collect()
+    }
+
+    /// A variable with its type alone.
+    fn typed(&mut self, variable: Xml<'a>, section: Section) -> Option<Variable> {
+        let name = types::name(variable, self.report)?;
+        let shape = self.shapes.shape(variable, &name, self.report)?;
+        let at = self.report.span(&head(variable)).into();
+        let (decl, _) = st::declared(&name, &shape, None, at);
+        Some(Variable { section, decl, unknown: unknown(&shape) })
+    }
+
+    /// A unit with the elements of its bodies. One that is no function or function block without a chart has its bodies as
+    /// actions.
+    fn unit(&mut self, pou: &Pou<'a>, plain: bool) -> (Unit, Vec<NodeId>) {
+        let at = self.report.span(&head(pou.node));
+        let name = Name::new(line(pou.name.text.trim()), self.report.span(&pou.name.at));
+        let kind = match pou.kind {
+            _ if !plain => UnitKind::Program,
+            PouKind::Function => UnitKind::Function,
+            PouKind::Block | PouKind::Program => UnitKind::FunctionBlock,
+        };
+        let result = pou.result.filter(|_| plain).and_then(|node| {
+            let shape = self.shapes.shape(node, &name, self.report)?;
+            let (decl, _) = st::declared(&name, &shape, None, self.report.span(&head(node)).into());
+            Some(Variable { section: Section::Output, decl, unknown: unknown(&shape) })
+        });
+        let vars = self.variables(pou, plain);
+        let (mut parts, mut nodes, mut body, mut body_at) = (Vec::new(), Vec::new(), Vec::new(), 0..0);
+        if plain {
+            match tree::body(pou.node) {
+                Some((Language::Sfc, node)) => {
+                    let what = say!("a function whose body is a chart");
+                    self.report.say(&codes::NOT_CARRIED, &head(node), what);
+                }
+                Some((language, node)) => {
+                    body = statements(language, node, self.report);
+                    body_at = node.range();
+                }
+                None => {}
+            }
+        } else {
+            for (language, node) in bodies(pou) {
+                let body = statements(language, node, self.report);
+                parts.push(Part::Action { name: name.clone(), body, at });
+                nodes.push(node.id());
+            }
+        }
+        let behind = Vec::new();
+        let unit = Unit { kind, name, result, vars, parts, body, behind, body_at, foreign: None, at };
+        (unit, nodes)
+    }
+
+    fn variables(&mut self, pou: &Pou<'a>, plain: bool) -> Vec<Variable> {
+        let mut made = Vec::new();
+        for section in &pou.sections {
+            let kind = match section.kind {
+                SectionKind::Local => Section::Local,
+                SectionKind::Temp => Section::Temp,
+                SectionKind::Input => Section::Input,
+                SectionKind::Output => Section::Output,
+                SectionKind::InOut => Section::InOut,
+                SectionKind::External => Section::External,
+                SectionKind::Global => Section::Global,
+            };
+            for variable in &section.variables {
+                let typed = self.typed(*variable, kind);
+                made.extend(if plain { typed.map(|v| self.declared(*variable, section, v)) } else { typed });
+            }
+        }
+        made
+    }
+
+    /// The whole declaration of a variable of which the type is known.
+    fn declared(&mut self, variable: Xml<'a>, section: &super::read::Section, mut v: Variable) -> Variable {
+        let shape = v.decl.names.first().and_then(|n| self.shapes.shape(variable, n, self.report));
+        if let (Some(name), Some(shape)) = (v.decl.names.first(), shape) {
+            v.decl = self.shapes.declaration(variable, name, &shape, self.report);
+        }
+        v.decl.kind = match v.section {
+            _ if is_constant(section) => VarKind::Const,
+            Section::Input => VarKind::Input,
+            Section::Output => VarKind::Output,
+            _ => VarKind::Var,
+        };
+        v.decl.retain = section.retain && v.decl.kind == VarKind::Var;
+        v.decl.address = super::declare::address(variable, self.report);
+        st::fit(&mut v.decl).into_iter().for_each(|p| self.report.put(p));
+        v
+    }
+}
+
+fn unknown(shape: &Shape) -> Option<Name> {
+    match st::element(shape) {
+        Shape::Unknown(of) => Some(of.clone()),
+        _ => None,
+    }
+}
+
+/// The bodies of a unit in statements: its own, those of its actions, and those of the action blocks of steps.
+fn bodies<'a>(pou: &Pou<'a>) -> Vec<(Language, Xml<'a>)> {
+    let action = |n: &Xml| n.is_element() && tag(*n) == "action";
+    let inline = pou.node.descendants().filter(action).flat_map(|n| kids(n).filter(|k| tag(*k) == "inline"));
+    let all = std::iter::once(pou.node).chain(pou.actions.iter().copied()).chain(inline);
+    all.filter_map(tree::body).filter(|(language, _)| *language != Language::Sfc).collect()
+}
+
+/// Names that only say where another name is declared: lists of global variables and enumerations.
+struct Prefixes<'n> {
+    lists: HashSet<String>,
+    globals: HashSet<String>,
+    enumerations: &'n HashSet<String>,
+    /// The variables of the unit.
+    own: HashSet<String>,
+}
+
+impl<'n> Prefixes<'n> {
+    fn of(project: &Project, enumerations: &'n HashSet<String>) -> Prefixes<'n> {
+        let lists = project.globals.iter().filter_map(|s| s.name.as_ref()).map(|n| n.to_uppercase());
+        let globals = project.globals.iter().flat_map(|s| &s.variables).filter_map(|v| name_of(*v));
+        let globals = globals.map(|n| n.to_uppercase()).collect();
+        Prefixes { lists: lists.collect(), globals, enumerations, own: HashSet::new() }
+    }
+
+    fn leave_out(&mut self, unit: &mut Unit) {
+        self.own = unit.vars.iter().flat_map(|v| &v.decl.names).map(|n| n.text.to_uppercase()).collect();
+        sfc::each(unit, self);
+    }
+}
+
+impl Visitor for Prefixes<'_> {
+    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+        let [first, second, ..] = path.names.as_slice() else { return };
+        let upper = first.text.to_uppercase();
+        let second = bare(&second.text).0.to_uppercase();
+        let hidden = self.own.contains(&upper) || self.own.contains(&second);
+        let listed = self.lists.contains(&upper) && self.globals.contains(&second);
+        if !hidden && (listed || self.enumerations.contains(&upper)) {
+            path.names.remove(0);
+        }
+    }
+}
