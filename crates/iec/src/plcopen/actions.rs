@@ -134,7 +134,7 @@ fn step_action<'a>(
 fn owned(maker: &Maker, draft: &Draft, unit: usize, index: usize, at: Span) -> Path {
     let plan = maker.coder.plan;
     let node = plan.pou(unit).and_then(|p| p.actions.get(index).copied());
-    let name = node.and_then(super::units::name_of).unwrap_or_default();
+    let name = node.and_then(super::tree::name_of).unwrap_or_default();
     let chart = plan.units.get(unit).map(|u| u.chart.clone()).unwrap_or_default();
     let here = draft.place.inside.as_ref() == Some(&chart);
     if here { nodes::path(&[&name], at) } else { nodes::path(&[&chart, &name], at) }

@@ -7,8 +7,8 @@ use g7_model::codes;
 use g7_model::{Arg, CaseArm, Expr, ExprKind, Name, Path, Said, Span, Stmt, StmtKind, Type, say};
 
 use super::read::SectionKind;
-use super::tree::{self, Language, Xml, head};
-use super::units::{Meaning, Plan, name_of};
+use super::tree::{self, Language, Xml, head, name_of};
+use super::units::{Meaning, Plan};
 use crate::nodes::{self, bare};
 use crate::report::Report;
 

@@ -14,8 +14,7 @@ use super::bodies::Place;
 use super::draft::{Draft, Maker, Order, block, guarded, kept, lacking};
 use super::flow::{self, Way};
 use super::graph::Graph;
-use super::tree::{self, Language, Xml, documentation, head, kid, tag, text, word};
-use super::units::name_of;
+use super::tree::{self, Language, Xml, documentation, head, kid, name_of, tag, text, word};
 use crate::nodes::{self, Taken, line};
 use crate::xml::attr;
 

@@ -17,12 +17,12 @@ use g7_model::visit_mut::{Use, Visitor};
 use g7_model::{Item, Name, Path, Problem, Span, Stmt, VarDecl, VarKind, say};
 use roxmltree::NodeId;
 
-use super::declare::is_constant;
+use super::addresses::address;
 use super::network;
+use super::read::variables;
 use super::read::{Pou, PouKind, Project, SectionKind};
-use super::tree::{self, Language, Xml, head, kids, tag};
+use super::tree::{self, Language, Xml, head, kids, name_of, tag};
 use super::types::{self, Known, Shapes};
-use super::units::{name_of, variables};
 use crate::il;
 use crate::nodes::{bare, line};
 use crate::report::Report;
@@ -30,7 +30,7 @@ use crate::sfc::{self, Part, Source, Unit, UnitKind};
 use crate::st::{self, Section, Shape, Variable};
 use crate::xml::attr;
 
-/// What the code of a project becomes.
+/// The code of a project, as a document has it.
 #[derive(Default)]
 pub(super) struct Code {
     /// True for each unit of the project that is a function or a function block without a chart.
@@ -341,13 +341,13 @@ impl<'a> Reader<'_, 'a> {
             v.decl = self.shapes.declaration(variable, name, &shape, self.report);
         }
         v.decl.kind = match v.section {
-            _ if is_constant(section) => VarKind::Const,
+            _ if section.is_constant() => VarKind::Const,
             Section::Input => VarKind::Input,
             Section::Output => VarKind::Output,
             _ => VarKind::Var,
         };
         v.decl.retain = section.retain && v.decl.kind == VarKind::Var;
-        v.decl.address = super::declare::address(variable, self.report);
+        v.decl.address = address(variable, self.report);
         st::fit(&mut v.decl).into_iter().for_each(|p| self.report.put(p));
         v
     }

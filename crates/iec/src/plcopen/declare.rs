@@ -5,14 +5,13 @@ use std::collections::HashSet;
 use g7_model::codes;
 use g7_model::{Name, Type, VarDecl, VarKind, say};
 
+use super::addresses::{address, channel};
 use super::read::{Pou, Section, SectionKind};
-use super::tree::{Xml, head, kid, text};
+use super::tree::{Xml, head};
 use super::types::{self, Shapes};
 use super::units::{Meaning, Plan, Unit};
-use crate::nodes::line;
 use crate::report::Report;
 use crate::st::{self, Shape};
-use crate::xml::attr::Text;
 
 /// The variables of a unit: those of the file and those of its chart.
 #[derive(Default)]
@@ -119,13 +118,8 @@ fn declaration<'a>(
     Some(decl)
 }
 
-/// True if the variables of a section are constants.
-pub(super) fn is_constant(section: &Section) -> bool {
-    section.constant && section.kind != SectionKind::External
-}
-
 fn kind(section: &Section, channel: Option<char>, program: bool) -> VarKind {
-    if is_constant(section) {
+    if section.is_constant() {
         return VarKind::Const;
     }
     // Names of lists of global variables say nothing about their use, except for the lists that we
@@ -140,26 +134,4 @@ fn kind(section: &Section, channel: Option<char>, program: bool) -> VarKind {
         (_, Some('Q')) => VarKind::Output,
         _ => VarKind::Var,
     }
-}
-
-fn written(variable: Xml) -> Option<Text> {
-    let inner = || kid(variable, "address").and_then(|a| text(a, "address").or_else(|| text(a, "value")));
-    text(variable, "address").or_else(inner).filter(|t| !t.text.trim().is_empty())
-}
-
-/// The direction of an address: `I`, `Q` or `M`. An incomplete address (`%I*`) tells it too.
-fn channel(variable: Xml) -> Option<char> {
-    written(variable)?.text.trim().chars().nth(1).map(|c| c.to_ascii_uppercase())
-}
-
-/// The address with its `%`. An incomplete address (`%I*`) counts as none.
-pub(super) fn address(variable: Xml, report: &mut Report) -> Option<Name> {
-    let text = written(variable)?;
-    let word = line(text.text.trim());
-    if let Some(kind) = word.strip_suffix('*') {
-        let what = say!("an address that is given elsewhere (`{kind}*`); the variable has none");
-        report.element(&codes::LEFT_OUT, "address", &text.at, what);
-        return None;
-    }
-    Some(Name::new(word, report.span(&text.at)))
 }

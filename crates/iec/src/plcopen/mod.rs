@@ -26,6 +26,7 @@
 //! - Work and size are bounded: wires, visits, instances, statements.
 
 mod actions;
+mod addresses;
 mod bodies;
 mod build;
 mod chart;

@@ -70,6 +70,13 @@ pub(super) struct Section<'a> {
     pub(super) variables: Vec<Xml<'a>>,
 }
 
+impl Section<'_> {
+    /// True if its variables are constants.
+    pub(super) fn is_constant(&self) -> bool {
+        self.constant && self.kind != SectionKind::External
+    }
+}
+
 /// A program that a task runs.
 pub(super) struct Run<'a> {
     pub(super) name: String,
@@ -273,4 +280,9 @@ pub(super) fn duration(word: &str) -> Option<Nanos> {
         .then(|| format!("{total:.0}").parse().ok())
         .flatten()
         .map(Nanos::new)
+}
+
+/// Every declared variable of a unit.
+pub(super) fn variables<'p, 'a>(pou: &'p Pou<'a>) -> impl Iterator<Item = Xml<'a>> + use<'p, 'a> {
+    pou.sections.iter().filter(|s| s.kind != SectionKind::External).flat_map(|s| s.variables.iter().copied())
 }

@@ -5,6 +5,7 @@
 
 use std::ops::Range;
 
+use crate::nodes::line;
 use crate::xml::attr::{self, Text};
 
 /// An element.
@@ -138,4 +139,10 @@ pub(super) fn body(node: Xml<'_>) -> Option<(Language, Xml<'_>)> {
     };
     let direct = kids(node).find_map(|n| of(n).map(|l| (l, n)));
     direct.or_else(|| kids(node).filter(|n| tag(*n) == "body").find_map(body))
+}
+
+/// The name of an element, fit for a name of the document.
+pub(super) fn name_of(node: Xml) -> Option<String> {
+    let name = line(&text(node, "name")?.text);
+    (!name.is_empty()).then_some(name)
 }

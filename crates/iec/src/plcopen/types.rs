@@ -13,8 +13,7 @@ use g7_model::{Composed, Expr, ExprKind, Literal, Name, Span, Type, UnaryOp, Var
 use roxmltree::NodeId;
 
 use super::read::{Project, duration, type_of};
-use super::tree::{Xml, documentation, head, kid, kids, tag, text, word};
-use super::units::name_of;
+use super::tree::{Xml, documentation, head, kid, kids, name_of, tag, text, word};
 use crate::nodes::line;
 use crate::report::Report;
 use crate::st::{self, Initial, MOST_DIMENSIONS, Shape, Types, declared};

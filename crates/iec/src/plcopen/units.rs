@@ -10,8 +10,8 @@ use g7_model::codes;
 use g7_model::{Name, Nanos, Type, say};
 
 use super::code::Code;
-use super::read::{Pou, PouKind, Project, Section, SectionKind};
-use super::tree::{self, Language, Xml, head, tag, text};
+use super::read::{Pou, PouKind, Project, Section, SectionKind, variables};
+use super::tree::{self, Language, Xml, head, name_of, tag};
 use super::types::{self, Known};
 use crate::nodes::{Taken, line};
 use crate::report::Report;
@@ -386,15 +386,4 @@ fn steps(pou: Xml<'_>) -> impl Iterator<Item = Xml<'_>> {
         .into_iter()
         .flat_map(|n| n.descendants())
         .filter(|n| n.is_element() && matches!(tag(*n).as_str(), "step" | "macroStep"))
-}
-
-/// Every declared variable of a unit.
-pub(super) fn variables<'p, 'a>(pou: &'p Pou<'a>) -> impl Iterator<Item = Xml<'a>> + use<'p, 'a> {
-    pou.sections.iter().filter(|s| s.kind != SectionKind::External).flat_map(|s| s.variables.iter().copied())
-}
-
-/// The name of an element, fit for a name of the document.
-pub(super) fn name_of(node: Xml) -> Option<String> {
-    let name = line(&text(node, "name")?.text);
-    (!name.is_empty()).then_some(name)
 }

@@ -226,8 +226,8 @@ pub(crate) fn fit(decl: &mut VarDecl) -> Option<Problem> {
         }
     }
     decl.limits.take_if(|_| decl.kind == VarKind::Input)?;
-    let name = decl.names.first().map_or("", |n| &*n.text);
-    let what = say!("the limits of the input `{name}` are not checked");
+    let name = decl.names.first()?;
+    let what = say!("the limits of the input `{}` are not checked", name.text);
     Some(Problem::new(&codes::LEFT_OUT, decl.at.0, what))
 }
 

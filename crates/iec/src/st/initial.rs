@@ -8,6 +8,13 @@ use super::parse::Parser;
 use super::shape::Shape;
 
 impl Parser<'_> {
+    /// Reads the whole text as an initial value.
+    pub(crate) fn whole_initial(mut self) -> Initial {
+        let value = self.initial();
+        self.expect_end();
+        value
+    }
+
     /// Reads an initial value.
     pub(crate) fn initial(&mut self) -> Initial {
         let start = self.token().start;

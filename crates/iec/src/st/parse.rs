@@ -5,7 +5,6 @@ use std::ops::Range;
 use g7_model::codes::{self, Code};
 use g7_model::{Expr, ExprKind, Name, Said, Span, Stmt, say};
 
-use super::initial::Initial;
 use super::lex::{Kind, Lexed, Token, tokens};
 use crate::report::Report;
 
@@ -80,13 +79,6 @@ impl<'a> Parser<'a> {
         self.expect_end();
         self.tell_foreign();
         expr
-    }
-
-    /// Reads the whole text as an initial value.
-    pub(crate) fn whole_initial(mut self) -> Initial {
-        let value = self.initial();
-        self.expect_end();
-        value
     }
 
     // Tokens
