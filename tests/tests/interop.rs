@@ -5,8 +5,8 @@
 use std::path::Path;
 
 use g7_codegen::plc;
-use g7_exchange::Dialect;
-use g7_model::{Document, FileId, Severity};
+use g7_exchange::{Dialect, Format};
+use g7_model::{Document, FileId, Item, Severity};
 use g7_peers::Matiec;
 use g7_peers::mended::mended;
 use g7_peers::projects::{output, readers};
@@ -266,6 +266,41 @@ fn beremiz_and_openplc_open_projects() {
             }
         }
     }
+}
+
+#[test]
+fn beremiz_writes_types_and_blocks_that_are_read_as_those_of_the_project() {
+    let (plcopen, text) = (format_named("plcopen"), format_named("sfc"));
+    let folder = Folder::new("interop-types");
+    std::fs::create_dir_all(&folder.0).expect("a folder");
+    let project = folder.0.join("plc.xml");
+    for reader in readers().iter().filter(|r| r.name == "Beremiz") {
+        for name in ["types.xml", "station.xml"] {
+            let own = Path::new(env!("CARGO_MANIFEST_DIR")).join("interchange/plcopen").join(name);
+            let own = std::fs::read_to_string(own).expect("a file of the repository");
+            // Beremiz leaves out the numbers of values of enumerations and the comments of members.
+            let own = own.replace("name=\"Hand\" value=\"5\"", "name=\"Hand\"").replace("in mm", "");
+            std::fs::write(&project, &own).expect("a file");
+            let made = reader.text(&project).unwrap_or_else(|e| panic!("{} on {name}: {e}", reader.name));
+            let (read, written) = (lines(plcopen, &own), lines(text, &made));
+            assert_eq!(read, written, "{name}: {made}");
+        }
+    }
+}
+
+fn format_named(name: &str) -> &'static Format {
+    g7_exchange::named(name).expect("a format of the table")
+}
+
+/// The lines of a document but for places, in an order that does not depend on the file.
+fn lines(format: &Format, text: &str) -> Vec<String> {
+    let (mut document, problems) = format.read(text.as_bytes(), FileId(0)).expect("it is read");
+    assert!(problems.iter().all(|p| p.severity() != Severity::Error), "{problems:?}");
+    document.items.retain(|i| !matches!(i, Item::Layout(_)));
+    let text = g7_syntax::print(&document, None);
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).filter(|l| !l.is_empty()).collect();
+    lines.sort_unstable();
+    lines
 }
 
 /// Compiles a program with matiec and runs it beside the chart; returns how many steps and variables they have

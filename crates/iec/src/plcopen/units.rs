@@ -206,7 +206,7 @@ impl<'a> Planner<'_, 'a> {
                     .filter_map(name_of)
                     .map(|n| n.to_uppercase())
                     .filter(|u| own(u) && !self.charts.has(u) && !blocks.contains(u))
-                    .chain(self.made(index).map(|n| n.to_uppercase()).filter(|_| !several))
+                    .chain(self.made(index).map(|n| n.to_uppercase()).filter(|_| !several && !apart))
                     .collect();
                 self.program(index, chart, node, interval, of_file);
             }

@@ -323,6 +323,7 @@ impl Builder<'_> {
         let target = match &a.target.kind {
             ExprKind::Direct(name) => Target::Direct(name.clone(), a.target.at),
             ExprKind::Path(path) => Target::Path(path.clone()),
+            ExprKind::Element(..) => Target::Element(Box::new(a.target.clone())),
             _ => Target::Path(g7_model::Path { names: Vec::new() }),
         };
         let kind =

@@ -1,7 +1,7 @@
 //! Reads the units and configurations of a file.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Path, Qualifier, Stmt, StmtKind, say};
+use g7_model::{Expr, ExprKind, Literal, Name, Nanos, Qualifier, Stmt, StmtKind, say};
 
 use super::unit::{Association, Instance, Part, Resource, Source, Task, Transition, Unit, UnitKind};
 use crate::st::{Kind, Parser};
@@ -245,15 +245,14 @@ fn association(p: &mut Parser) -> Option<Association> {
 }
 
 fn target(p: &mut Parser) -> Option<Expr> {
-    let start = p.token().start;
-    if p.token().kind == Kind::Direct {
-        return Some(p.expr());
+    match p.token().kind {
+        Kind::Direct => Some(p.expr()),
+        Kind::Word => Some(p.variable()),
+        _ => {
+            p.expected(say!("the name of an action"));
+            None
+        }
     }
-    let mut names = vec![p.name(say!("the name of an action"))?];
-    while p.eat(".") {
-        names.push(p.name(say!("the name of an action"))?);
-    }
-    Some(Expr { kind: ExprKind::Path(Path { names }), at: p.since(start).into() })
 }
 
 fn qualifier_of(p: &mut Parser) -> Qualifier {

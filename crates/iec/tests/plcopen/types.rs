@@ -125,7 +125,6 @@ function block Rest {
 var Force : INT
 var Now : INT := Off
 var Heavy : BOOL
-var Rest_2 : Rest
 var Rows : ARRAY[1..2] OF BOOL
 pre { Rows[2] := Heavy }
 chart Sort {
@@ -133,16 +132,16 @@ chart Sort {
   var Scales : ARRAY[1..2] OF Scale
   var Doors : ARRAY[0..3] OF BOOL
   var Left : INT
-  initial step Wait {
-    N {
-      Scales[1](Load := Force, Item := Box)
-      Rest_2(All := Box.Weight, Over => Box.Weight)
-      Left := Rest_2.Rest
-    }
-  }
+  var Rest_2 : Rest
+  initial step Wait { N Weigh }
   step Push { S Doors[2] }
   Wait -> Push when Now = Auto and Box.Good
   Push -> Wait when Scales[1].Full
+  action Weigh {
+    Scales[1](Load := Force, Item := Box)
+    Rest_2(All := Box.Weight, Over => Box.Weight)
+    Left := Rest_2.Rest
+  }
 }
 ",
     );
@@ -256,6 +255,27 @@ fn a_wide_function_in_a_condition_is_told() {
     let (_, problems) = project("", &format!("{split}{chart}"));
     let told = "a function with structures, arrays or outputs in a receptivity; call it in an action";
     assert!(errors(&problems).contains(&told), "{problems:?}");
+}
+
+#[test]
+fn a_wide_function_in_the_action_of_a_step_has_an_instance() {
+    let swap = format!(
+        "<pou name='Swap' pouType='function'><interface><returnType><INT/></returnType><inOutVars>{}</inOutVars></interface>\
+         <body><ST>Swap := a; a := 0;</ST></body></pou>",
+        variable("a", "<INT/>")
+    );
+    let chart = format!(
+        "<pou name='P' pouType='program'><interface><localVars>{}</localVars></interface><body><SFC>\
+         <step localId='1' name='S' initialStep='true'><connectionPointOut formalParameter=''/></step>\
+         <actionBlock localId='2'><connectionPointIn><connection refLocalId='1'/></connectionPointIn>\
+         <action localId='3'><inline><ST>n := Swap(n) + 1;</ST></inline></action></actionBlock></SFC></body></pou>",
+        variable("n", "<INT/>")
+    );
+    let (found, problems) = project("", &format!("{swap}{chart}"));
+    assert_eq!(errors(&problems), Vec::<&str>::new());
+    let text = text(&found);
+    assert!(text.contains("Swap_2(a := n)\n      n := Swap_2.Swap + 1"), "{text}");
+    compiles(&found);
 }
 
 #[test]
