@@ -309,8 +309,9 @@ impl<'a> Reader<'_, 'a> {
                 nodes.push(node.id());
             }
         }
-        let behind = Vec::new();
-        let unit = Unit { kind, name, result, vars, parts, body, behind, body_at, foreign: None, at };
+        let (before, after, behind) = (Vec::new(), Vec::new(), Vec::new());
+        let unit =
+            Unit { kind, name, result, vars, parts, body, before, after, behind, body_at, foreign: None, at };
         (unit, nodes)
     }
 

@@ -16,7 +16,8 @@ use crate::report::Report;
 use crate::st::{Section, Types, Variable, settle};
 
 /// The document of a file.
-pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Document {
+pub(super) fn document(mut source: Source, length: usize, report: &mut Report) -> Document {
+    source.units.iter_mut().for_each(|unit| copied(unit, report));
     let at = report.span(&(0..length));
     let profile = Profile { name: ProfileName::Iec61131, switches: Vec::new(), at: at.into() };
     let mut items = vec![Item::Profile(profile)];
@@ -59,6 +60,21 @@ pub(super) fn document(source: Source, length: usize, report: &mut Report) -> Do
     document
 }
 
+/// Puts the copies of the parameters of a program without a chart into its statements.
+fn copied(unit: &mut Unit, report: &mut Report) {
+    if unit.is_chart() {
+        return;
+    }
+    if !unit.after.is_empty() && unit.body.iter().any(Stmt::returns) {
+        let what =
+            say!("RETURN in a program whose outputs the configuration connects: they would not be copied");
+        report.put(Problem::new(&codes::NOT_CARRIED, unit.name.at.0, what));
+    }
+    unit.body.splice(0..0, std::mem::take(&mut unit.before));
+    let last = if unit.behind.is_empty() { &mut unit.body } else { &mut unit.behind };
+    last.append(&mut unit.after);
+}
+
 /// The interval of each unit.
 struct Paces {
     /// The shortest interval of all.
@@ -84,10 +100,6 @@ fn paces(source: &Source, report: &mut Report) -> Paces {
         if !known {
             let what = say!("there is no program `{}`", instance.unit.text);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, instance.unit.at.0, what));
-        }
-        if source.instances.iter().filter(|i| i.unit.text.to_uppercase() == name).count() > 1 {
-            let what = say!("the program `{}` runs more than once; one is carried over", instance.unit.text);
-            report.put(Problem::new(&codes::NOT_CARRIED, instance.at, what));
         }
         if let Some(interval) = interval {
             units.insert(name, interval);
@@ -219,7 +231,13 @@ impl Builder<'_> {
             Vec::new()
         };
         if unit.is_chart() {
+            let copies = |list: &Vec<Stmt>| Body::St(nodes::block(list.clone(), unit.at));
             items.extend(step_first(&unit.parts).map(|part| self.part(unit, part)));
+            let filled = |list: &&Vec<Stmt>| !list.is_empty();
+            items
+                .extend(Some(&unit.before).filter(filled).map(|b| ChartItem::Pre(copies(b), unit.at.into())));
+            items
+                .extend(Some(&unit.after).filter(filled).map(|b| ChartItem::Post(copies(b), unit.at.into())));
         } else {
             lost_actions(unit, self.report);
             items.push(ChartItem::Pre(Body::St(block), unit.at.into()));

@@ -94,7 +94,8 @@ pub(super) fn expand(source: &mut Source, report: &mut Report) {
         if let Some(place) = source.instances.iter().position(runs)
             && let Some(task) = source.instances.get(place).map(|i| i.task.clone())
         {
-            let run = Instance { task, unit: unit.name.clone(), links: Vec::new(), at: unit.at };
+            let (name, links) = (unit.name.clone(), Vec::new());
+            let run = Instance { name, task, unit: unit.name.clone(), links, at: unit.at };
             source.instances.insert(place + 1, run);
         }
         source.units.push(unit);

@@ -3,12 +3,13 @@
 //! # Where this sits
 //!
 //! ```text
-//! bytes -> st (lexer, parser) -> read (units) -> resources, enabled, functions, inouts, instances, blocks -> build (Document)
+//! bytes -> st (lexer, parser) -> read (units) -> programs, resources, enabled, functions, inouts, instances, blocks -> build (Document)
 //!                                                                                      -> st::settle
 //! Document -> write -> text
 //! ```
 //!
 //! - `read` turns the file into program organisation units and configurations.
+//! - `programs` makes a unit of each program that the configuration runs, and connects its parameters.
 //! - `enabled` and `functions` rewrite calls with `EN`, and functions with more than one elementary result.
 //! - `instances` makes a unit of each instance of a block with a chart.
 //! - `blocks` replaces calls of the file's own function blocks by their bodies.
@@ -24,6 +25,7 @@ mod enabled;
 mod functions;
 mod inouts;
 mod instances;
+mod programs;
 mod read;
 mod resources;
 mod singles;
@@ -92,6 +94,7 @@ pub fn import(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>) {
     let place = |r| r;
     let mut parser = Parser::new(text, &place, &mut report);
     let mut source = read::source(&mut parser);
+    programs::expand(&mut source, &mut report);
     resources::expand(&mut source, &mut report);
     if source.units.is_empty() && source.globals.is_empty() {
         let what = say!("no PROGRAM, FUNCTION_BLOCK, FUNCTION or CONFIGURATION stands in this file");

@@ -54,6 +54,8 @@ fn item(p: &mut Parser, source: &mut Source) {
                 vars: std::mem::take(&mut source.globals),
                 parts: Vec::new(),
                 body: Vec::new(),
+                before: Vec::new(),
+                after: Vec::new(),
                 behind: Vec::new(),
                 body_at: 0..0,
                 foreign: None,
@@ -97,6 +99,8 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         vars: Vec::new(),
         parts: Vec::new(),
         body: Vec::new(),
+        before: Vec::new(),
+        after: Vec::new(),
         behind: Vec::new(),
         body_at: 0..0,
         foreign: None,
@@ -471,7 +475,7 @@ fn instance(p: &mut Parser, source: &mut Source) {
     if matches!(p.word().as_str(), "RETAIN" | "NON_RETAIN") && p.ahead(1).kind == Kind::Word {
         p.bump();
     }
-    p.name(say!("the name of the program"));
+    let name = p.name(say!("the name of the program"));
     let task = if p.eat_word("WITH") { p.name(say!("the name of a task")) } else { None };
     p.expect(":");
     let Some(unit) = p.name(say!("the type of the program")) else { return };
@@ -491,5 +495,6 @@ fn instance(p: &mut Parser, source: &mut Source) {
         p.expect(")");
     }
     p.eat(";");
-    source.instances.push(Instance { task, unit, links, at: p.since(start) });
+    let name = name.unwrap_or_else(|| unit.clone());
+    source.instances.push(Instance { name, task, unit, links, at: p.since(start) });
 }

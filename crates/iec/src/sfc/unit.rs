@@ -45,6 +45,10 @@ pub(crate) struct Unit {
     pub(crate) parts: Vec<Part>,
     /// The statements of a unit without a chart.
     pub(crate) body: Vec<Stmt>,
+    /// Copies of the parameters of a program from what the configuration connects them with.
+    pub(crate) before: Vec<Stmt>,
+    /// Copies of its outputs to what the configuration connects them with.
+    pub(crate) after: Vec<Stmt>,
     /// Statements behind the charts that the unit calls.
     pub(crate) behind: Vec<Stmt>,
     pub(crate) body_at: Range<usize>,
@@ -100,6 +104,7 @@ pub(crate) struct Task {
 /// A program that a resource runs.
 #[derive(Debug)]
 pub(crate) struct Instance {
+    pub(crate) name: Name,
     pub(crate) task: Option<Name>,
     pub(crate) unit: Name,
     /// Variables of the program with the address or global variable that each is connected to.
@@ -132,14 +137,21 @@ impl Unit {
     }
 }
 
-/// Visits all statements and receptivities of a unit.
+/// Visits all statements, receptivities and actions of a unit.
 pub(crate) fn each(unit: &mut Unit, v: &mut impl Visitor) {
-    visit_mut::stmts(&mut unit.body, v);
+    [&mut unit.before, &mut unit.body, &mut unit.after]
+        .into_iter()
+        .for_each(|list| visit_mut::stmts(list, v));
     for part in &mut unit.parts {
         match part {
             Part::Action { body, .. } => visit_mut::stmts(body, v),
             Part::Transition(t) => visit_mut::expr(&mut t.receptivity, v),
-            Part::Step { .. } => {}
+            Part::Step { associations, .. } => {
+                for a in associations {
+                    visit_mut::expr(&mut a.target, v);
+                    a.time.iter_mut().for_each(|t| visit_mut::expr(t, v));
+                }
+            }
         }
     }
 }

@@ -13,6 +13,7 @@ mod functions;
 mod hostile;
 mod instances;
 mod problems;
+mod programs;
 #[path = "../../../exchange/tests/support/mod.rs"]
 mod support;
 mod types;
