@@ -4,8 +4,8 @@ use std::collections::HashSet;
 
 use g7_model::codes;
 use g7_model::{
-    ActionKind, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Problem, Stmt, StmtKind, Target,
-    VarDecl, VarKind, say,
+    ActionKind, Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Problem, Stmt, StmtKind,
+    Target, VarDecl, VarKind, say,
 };
 
 use crate::report::Report;
@@ -17,6 +17,7 @@ pub(super) fn settle(document: &mut Document, report: &mut Report) {
         match item {
             Item::Pre(body, _) | Item::Post(body, _) => targets(&body.block().statements, None, &mut written),
             Item::Chart(chart) => of_chart(chart, &mut written),
+            Item::Composed(block) => of_block(block, &mut written),
             _ => {}
         }
     }
@@ -57,6 +58,17 @@ fn change(decl: &mut VarDecl, chart: Option<&str>, written: &Written, report: &m
             say!("an input that the program writes as well; it is a variable here, without an address");
         report.put(Problem::new(&codes::DIFFERENT, decl.at.0, what));
     }
+}
+
+/// The variables of the file that a function block writes.
+fn of_block(block: &Composed, written: &mut Written) {
+    let Some(body) = &block.body else { return };
+    let mut here = Written::new();
+    targets(&body.block().statements, None, &mut here);
+    let members = block.members.iter().chain(&block.inouts).flat_map(|v| &v.names);
+    let own: HashSet<&str> =
+        members.chain(body.block().locals.iter().flat_map(|l| &l.names)).map(|n| &*n.text).collect();
+    written.extend(here.into_iter().filter(|(near, name)| near.is_none() && !own.contains(name.as_str())));
 }
 
 fn of_chart(chart: &Chart, written: &mut Written) {

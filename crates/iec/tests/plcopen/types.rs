@@ -239,6 +239,26 @@ fn a_structure_within_itself_is_told_by_the_compiler() {
 }
 
 #[test]
+fn an_input_that_a_block_writes_is_a_variable() {
+    let block = "<pou name='B' pouType='functionBlock'><interface><localVars><variable name='n'><type><INT/></type></variable>\
+                 </localVars><externalVars><variable name='x'><type><INT/></type></variable></externalVars></interface>\
+                 <body><ST>x := 3; n := 4;</ST></body></pou>";
+    let main = "<pou name='P' pouType='program'><interface><localVars><variable name='b'><type><derived name='B'/></type></variable>\
+                <variable name='n' address='%IW2'><type><INT/></type></variable></localVars></interface><body><ST>b();</ST></body></pou>";
+    let file = format!(
+        "<project xmlns='http://www.plcopen.org/xml/tc6_0201'><types><pous>{block}{main}</pous></types><instances><configurations>\
+         <configuration name='C'><globalVars><variable name='x' address='%IW1'><type><INT/></type></variable></globalVars>\
+         </configuration></configurations></instances></project>"
+    );
+    let (found, problems) = support::import("plcopen", file.as_bytes(), FileId(0));
+    assert_eq!(problems.iter().map(|p| p.code.id).collect::<Vec<_>>(), ["G0614"]);
+    let text = text(&found);
+    // `n` of the block is another variable than the input of its name.
+    assert!(text.contains("var x : INT\n") && text.contains("input n : INT at %IW2"), "{text}");
+    compiles(&found);
+}
+
+#[test]
 fn a_wide_function_in_a_condition_is_told() {
     let split = format!(
         "<pou name='Split' pouType='function'><interface><returnType><INT/></returnType><inputVars>{}</inputVars><outputVars>{}</outputVars>\
