@@ -66,58 +66,26 @@ impl Code {
 pub(super) fn read<'a>(project: &Project<'a>, shapes: &mut Shapes<'a>, report: &mut Report) -> Code {
     let plain = plain(project);
     let used = used(project, &plain, report);
-    let mut reader = Reader { project, shapes, report };
-    let mut source = Source { globals: reader.globals(), ..Source::default() };
+    let (mut source, origins, enumerations) = Reader { project, shapes, report }.source(&plain, &used);
     let own_globals = source.globals.len();
-    let mut origins = Vec::new();
-    for (index, pou) in project.pous.iter().enumerate() {
-        let plain = plain.get(index) == Some(&true);
-        if plain && pou.kind == PouKind::Block && !used.contains(&index) {
-            continue;
-        }
-        let (unit, nodes) = reader.unit(pou, plain);
-        origins.push((unit.name.text.to_uppercase(), Origin { index, variables: unit.vars.len(), nodes }));
-        source.units.push(unit);
-    }
-    let enumerations = shapes.enumerations();
-    let mut prefixes = Prefixes::of(project, &enumerations);
-    let of_text = |u: &&mut Unit| u.kind != UnitKind::Program;
-    source.units.iter_mut().filter(of_text).for_each(|unit| prefixes.leave_out(unit));
-    source.types = std::mem::take(&mut shapes.types);
-    let functions: HashSet<String> = source
-        .units
-        .iter()
-        .filter(|u| u.kind == UnitKind::Function)
-        .map(|u| u.name.text.to_uppercase())
-        .collect();
+    let functions = names(&source, UnitKind::Function);
     sfc::rewrite(&mut source, report);
     let mut code = Code { plain, enumerations, ..Code::default() };
+    code.wide = &names(&source, UnitKind::FunctionBlock) & &functions;
     code.items.extend(sfc::enumerations(&source.types).map(Item::Var));
-    let is_wide =
-        |u: &&Unit| u.kind == UnitKind::FunctionBlock && functions.contains(&u.name.text.to_uppercase());
-    code.wide = source.units.iter().filter(is_wide).map(|u| u.name.text.to_uppercase()).collect();
     code.items.extend(sfc::types(&mut source, report));
     code.blocks = source.blocks.iter().map(|b| b.name.text.to_uppercase()).collect();
     code.globals = source.globals.drain(own_globals..).map(|v| v.decl).collect();
-    code.before = std::mem::take(&mut source.before);
-    let mut origins: HashMap<String, Origin> = origins.into_iter().collect();
-    for unit in &source.units {
-        match unit.kind {
-            UnitKind::Function => code.functions.extend(function(&source, unit, report)),
-            UnitKind::FunctionBlock => {
-                let what = say!("the function block `{}` is not used; it is left out", unit.name.text);
-                report.put(Problem::new(&codes::LEFT_OUT, unit.name.at.0, what));
-            }
-            UnitKind::Program => {
-                if let Some(origin) = origins.remove(&unit.name.text.to_uppercase()) {
-                    code.keep(unit, origin);
-                }
-            }
-        }
-    }
     code.globals.extend(externals(project, &source, report));
+    code.before = std::mem::take(&mut source.before);
+    code.keep_units(&source, origins, report);
     shapes.types = source.types;
     code
+}
+
+/// The names of all units of a kind, in upper case.
+fn names(source: &Source, kind: UnitKind) -> HashSet<String> {
+    source.units.iter().filter(|u| u.kind == kind).map(|u| u.name.text.to_uppercase()).collect()
 }
 
 /// Where a unit comes from: its number in the project, how many variables it declares, and its bodies.
@@ -127,7 +95,28 @@ struct Origin {
     nodes: Vec<NodeId>,
 }
 
+/// The origins of units, by their names in upper case.
+type Origins = HashMap<String, Origin>;
+
 impl Code {
+    /// Keeps the functions, and what became of the other units.
+    fn keep_units(&mut self, source: &Source, mut origins: Origins, report: &mut Report) {
+        for unit in &source.units {
+            match unit.kind {
+                UnitKind::Function => self.functions.extend(function(source, unit, report)),
+                UnitKind::FunctionBlock => {
+                    let what = say!("the function block `{}` is not used; it is left out", unit.name.text);
+                    report.put(Problem::new(&codes::LEFT_OUT, unit.name.at.0, what));
+                }
+                UnitKind::Program => {
+                    if let Some(origin) = origins.remove(&unit.name.text.to_uppercase()) {
+                        self.keep(unit, origin);
+                    }
+                }
+            }
+        }
+    }
+
     /// Keeps the rewritten statements of a unit and the variables that they need.
     fn keep(&mut self, unit: &Unit, origin: Origin) {
         let made: Vec<VarDecl> = unit.vars.iter().skip(origin.variables).map(|v| v.decl.clone()).collect();
@@ -195,14 +184,13 @@ fn plain(project: &Project) -> Vec<bool> {
 
 /// The types of a unit's variables that the file may declare, in upper case, also those of arrays.
 fn contained(pou: &Pou) -> BTreeSet<String> {
-    let of = |v: Xml<'_>| -> Vec<String> { named_within(v).collect() };
-    variables(pou).flat_map(of).collect()
+    variables(pou).filter_map(super::read::type_of).flat_map(named_within).collect()
 }
 
-/// The names of types within the type of a variable, in upper case.
-fn named_within<'a>(variable: Xml<'a>) -> impl Iterator<Item = String> + use<'a> {
-    let within = super::read::type_of(variable).into_iter().flat_map(|t| t.descendants());
-    within.filter(|n| n.is_element()).filter_map(|n| match types::plain(n) {
+/// The names of types that stand within an element, in upper case.
+fn named_within<'a>(node: Xml<'a>) -> impl Iterator<Item = String> + use<'a> {
+    let named = |n: &Xml| n.is_element() && matches!(&*tag(*n), "derived" | "typeName");
+    node.descendants().filter(named).filter_map(|n| match types::plain(n) {
         Known::Derived(name) => Some(name.to_uppercase()),
         Known::Type(_) | Known::None => None,
     })
@@ -217,11 +205,8 @@ fn used(project: &Project, plain: &[bool], report: &mut Report) -> HashSet<usize
     for (index, pou) in project.pous.iter().enumerate().rev() {
         by_name.insert(pou.name.text.trim().to_uppercase(), index);
     }
-    let globals = project.globals.iter().flat_map(|s| &s.variables).flat_map(|v| named_within(*v));
-    let mut open: Vec<String> = globals.collect();
-    for node in &project.types {
-        open.extend(node.descendants().filter(|n| tag(*n) == "variable").flat_map(named_within));
-    }
+    let globals = project.globals.iter().flat_map(|s| &s.variables);
+    let mut open: Vec<String> = globals.chain(&project.types).flat_map(|node| named_within(*node)).collect();
     let running = project.pous.iter().enumerate().filter(|(i, _)| !is_block(*i));
     open.extend(running.flat_map(|(_, pou)| contained(pou)));
     let mut used = HashSet::new();
@@ -258,6 +243,31 @@ struct Reader<'r, 'a> {
 }
 
 impl<'a> Reader<'_, 'a> {
+    /// All units but function blocks that nothing uses, with the global variables and the types; the origins of the
+    /// units, and the names of the enumerations in upper case.
+    fn source(mut self, plain: &[bool], used: &HashSet<usize>) -> (Source, Origins, HashSet<String>) {
+        let project = self.project;
+        let mut source = Source { globals: self.globals(), ..Source::default() };
+        let mut origins = Origins::new();
+        for (index, pou) in project.pous.iter().enumerate() {
+            let plain = plain.get(index) == Some(&true);
+            if plain && pou.kind == PouKind::Block && !used.contains(&index) {
+                continue;
+            }
+            let (unit, nodes) = self.unit(pou, plain);
+            let origin = Origin { index, variables: unit.vars.len(), nodes };
+            origins.insert(unit.name.text.to_uppercase(), origin);
+            source.units.push(unit);
+        }
+        let enumerations = self.shapes.enumerations();
+        let mut prefixes = Prefixes::of(project, &enumerations);
+        // `bodies` does this for charts and programs.
+        let of_text = |u: &&mut Unit| u.kind != UnitKind::Program;
+        source.units.iter_mut().filter(of_text).for_each(|unit| prefixes.leave_out(unit));
+        source.types = std::mem::take(&mut self.shapes.types);
+        (source, origins, enumerations)
+    }
+
     fn globals(&mut self) -> Vec<Variable> {
         let project = self.project;
         let variables = project.globals.iter().flat_map(|s| &s.variables);
