@@ -10,7 +10,7 @@ use g7_model::{
 use super::draft::{Draft, Maker, block, guarded, kept};
 use super::graph::{Object, Slot};
 use super::read::duration;
-use super::tree::{self, Language, Xml, documentation, head, kid, kids, tag, text, word};
+use super::tree::{self, Language, Xml, documentation, head, kid, kids, name_of, tag, text, word};
 use crate::nodes::{self, line};
 use crate::st;
 use crate::xml::attr::Text;
@@ -134,7 +134,7 @@ fn step_action<'a>(
 fn owned(maker: &Maker, draft: &Draft, unit: usize, index: usize, at: Span) -> Path {
     let plan = maker.coder.plan;
     let node = plan.pou(unit).and_then(|p| p.actions.get(index).copied());
-    let name = node.and_then(super::tree::name_of).unwrap_or_default();
+    let name = node.and_then(name_of).unwrap_or_default();
     let chart = plan.units.get(unit).map(|u| u.chart.clone()).unwrap_or_default();
     let here = draft.place.inside.as_ref() == Some(&chart);
     if here { nodes::path(&[&name], at) } else { nodes::path(&[&chart, &name], at) }

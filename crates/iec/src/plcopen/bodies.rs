@@ -250,9 +250,6 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
         {
             return self.meant(meaning, None, names, 1, place);
         }
-        if names.len() > 1 && self.plan.code.enumerations.contains(&upper) {
-            return Found::Path(names.get(1..).unwrap_or_default().to_vec(), None);
-        }
         let units = self.plan.units.iter().enumerate();
         let program = units.filter(|(_, u)| u.program).find(|(_, u)| u.chart.to_uppercase() == upper);
         match program {

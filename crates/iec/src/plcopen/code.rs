@@ -6,15 +6,15 @@
 //!                                   sfc (rewrite)
 //! ```
 //!
-//! Statements keep the names of the file; `bodies` gives those of charts and programs the names of the document. A
-//! function block with a chart, with actions, or with an instance of such a function block stays with `units`: each
-//! instance of it becomes a chart.
+//! Statements keep the names of the file; `bodies` gives those of charts and programs the names of the document.
+//!
+//! Three kinds of function block are not read here: those that have a chart, those that have actions, and those that
+//! hold an instance of such a function block. `units` makes a chart of each instance of them.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use g7_model::codes;
-use g7_model::visit_mut::{Use, Visitor};
-use g7_model::{Item, Name, Path, Problem, Span, Stmt, VarDecl, VarKind, say};
+use g7_model::{Item, Name, Problem, Stmt, VarDecl, VarKind, say};
 use roxmltree::NodeId;
 
 use super::addresses::address;
@@ -24,7 +24,7 @@ use super::read::{Pou, PouKind, Project, SectionKind};
 use super::tree::{self, Language, Xml, head, kids, name_of, tag};
 use super::types::{self, Known, Shapes};
 use crate::il;
-use crate::nodes::{bare, line};
+use crate::nodes::line;
 use crate::report::Report;
 use crate::sfc::{self, Part, Source, Unit, UnitKind};
 use crate::st::{self, Section, Shape, Variable};
@@ -40,16 +40,14 @@ pub(super) struct Code {
     pub(super) functions: Vec<Item>,
     /// The names of the function blocks among these, in upper case.
     pub(super) blocks: HashSet<String>,
-    /// Variables of the file that the rewritten statements need.
+    /// Variables of the file that the passes of `sfc` add, such as the timer for `TIME()`.
     pub(super) globals: Vec<VarDecl>,
     /// Statements that run before all others.
     pub(super) before: Vec<Stmt>,
-    /// Variables that the rewritten statements of each unit of the project need.
+    /// Variables that these passes add to a unit of the project, such as the instances of functions.
     pub(super) made: HashMap<usize, Vec<VarDecl>>,
     /// The functions that became function blocks, in upper case.
     pub(super) wide: HashSet<String>,
-    /// The types that are enumerations, in upper case: `Mode.Off` is `Off`.
-    pub(super) enumerations: HashSet<String>,
     /// The rewritten statements of each body.
     bodies: HashMap<NodeId, Vec<Stmt>>,
 }
@@ -66,14 +64,13 @@ impl Code {
 pub(super) fn read<'a>(project: &Project<'a>, shapes: &mut Shapes<'a>, report: &mut Report) -> Code {
     let plain = plain(project);
     let used = used(project, &plain, report);
-    let (mut source, origins, enumerations) = Reader { project, shapes, report }.source(&plain, &used);
+    let (mut source, origins) = Reader { project, shapes, report }.source(&plain, &used);
     let own_globals = source.globals.len();
     let functions = names(&source, UnitKind::Function);
     sfc::rewrite(&mut source, report);
-    let mut code = Code { plain, enumerations, ..Code::default() };
+    let mut code = Code { plain, ..Code::default() };
     code.wide = &names(&source, UnitKind::FunctionBlock) & &functions;
-    code.items.extend(sfc::enumerations(&source.types).map(Item::Var));
-    code.items.extend(sfc::types(&mut source, report));
+    code.items = sfc::types(&mut source, report);
     code.blocks = source.blocks.iter().map(|b| b.name.text.to_uppercase()).collect();
     code.globals = source.globals.drain(own_globals..).map(|v| v.decl).collect();
     code.globals.extend(externals(project, &source, report));
@@ -243,9 +240,9 @@ struct Reader<'r, 'a> {
 }
 
 impl<'a> Reader<'_, 'a> {
-    /// All units but function blocks that nothing uses, with the global variables and the types; the origins of the
-    /// units, and the names of the enumerations in upper case.
-    fn source(mut self, plain: &[bool], used: &HashSet<usize>) -> (Source, Origins, HashSet<String>) {
+    /// All units but function blocks that nothing uses, with the global variables and the types; and the origins of the
+    /// units.
+    fn source(mut self, plain: &[bool], used: &HashSet<usize>) -> (Source, Origins) {
         let project = self.project;
         let mut source = Source { globals: self.globals(), ..Source::default() };
         let mut origins = Origins::new();
@@ -259,13 +256,8 @@ impl<'a> Reader<'_, 'a> {
             origins.insert(unit.name.text.to_uppercase(), origin);
             source.units.push(unit);
         }
-        let enumerations = self.shapes.enumerations();
-        let mut prefixes = Prefixes::of(project, &enumerations);
-        // `bodies` does this for charts and programs.
-        let of_text = |u: &&mut Unit| u.kind != UnitKind::Program;
-        source.units.iter_mut().filter(of_text).for_each(|unit| prefixes.leave_out(unit));
         source.types = std::mem::take(&mut self.shapes.types);
-        (source, origins, enumerations)
+        (source, origins)
     }
 
     fn globals(&mut self) -> Vec<Variable> {
@@ -274,17 +266,25 @@ impl<'a> Reader<'_, 'a> {
         variables.filter_map(|v| self.typed(*v, Section::Global)).collect()
     }
 
-    /// A variable with its type alone.
-    fn typed(&mut self, variable: Xml<'a>, section: Section) -> Option<Variable> {
+    /// The name and the type of a variable.
+    fn shape(&mut self, variable: Xml<'a>) -> Option<(Name, Shape)> {
         let name = types::name(variable, self.report)?;
         let shape = self.shapes.shape(variable, &name, self.report)?;
-        let at = self.report.span(&head(variable)).into();
-        let (decl, _) = st::declared(&name, &shape, None, at);
-        Some(Variable { section, decl, unknown: unknown(&shape) })
+        Some((name, shape))
     }
 
-    /// A unit with the elements of its bodies. One that is no function or function block without a chart has its bodies as
-    /// actions.
+    /// A variable without its initial value, for the passes that only look at types.
+    fn typed(&mut self, variable: Xml<'a>, section: Section) -> Option<Variable> {
+        let (name, shape) = self.shape(variable)?;
+        Some(self.without_value(&name, &shape, section, variable))
+    }
+
+    fn without_value(&self, name: &Name, shape: &Shape, section: Section, node: Xml) -> Variable {
+        let (decl, _) = st::declared(name, shape, None, self.report.span(&head(node)).into());
+        Variable { section, decl, unknown: shape.unknown().cloned() }
+    }
+
+    /// A unit. The bodies of a unit that is not plain become actions of it; their elements are given as well.
     fn unit(&mut self, pou: &Pou<'a>, plain: bool) -> (Unit, Vec<NodeId>) {
         let at = self.report.span(&head(pou.node));
         let name = Name::new(line(pou.name.text.trim()), self.report.span(&pou.name.at));
@@ -293,35 +293,32 @@ impl<'a> Reader<'_, 'a> {
             PouKind::Function => UnitKind::Function,
             PouKind::Block | PouKind::Program => UnitKind::FunctionBlock,
         };
-        let result = pou.result.filter(|_| plain).and_then(|node| {
-            let shape = self.shapes.shape(node, &name, self.report)?;
-            let (decl, _) = st::declared(&name, &shape, None, self.report.span(&head(node)).into());
-            Some(Variable { section: Section::Output, decl, unknown: unknown(&shape) })
-        });
-        let vars = self.variables(pou, plain);
-        let (mut parts, mut nodes, mut body, mut body_at) = (Vec::new(), Vec::new(), Vec::new(), 0..0);
-        if plain {
-            match tree::body(pou.node) {
-                Some((Language::Sfc, node)) => {
-                    let what = say!("a function whose body is a chart");
-                    self.report.say(&codes::NOT_CARRIED, &head(node), what);
-                }
-                Some((language, node)) => {
-                    body = statements(language, node, self.report);
-                    body_at = node.range();
-                }
-                None => {}
-            }
-        } else {
+        let mut unit = Unit::new(kind, name, at);
+        let mut nodes = Vec::new();
+        unit.vars = self.variables(pou, plain);
+        if !plain {
             for (language, node) in bodies(pou) {
                 let body = statements(language, node, self.report);
-                parts.push(Part::Action { name: name.clone(), body, at });
+                unit.parts.push(Part::Action { name: unit.name.clone(), body, at });
                 nodes.push(node.id());
             }
+            return (unit, nodes);
         }
-        let (before, after, behind) = (Vec::new(), Vec::new(), Vec::new());
-        let unit =
-            Unit { kind, name, result, vars, parts, body, before, after, behind, body_at, foreign: None, at };
+        unit.result = pou.result.and_then(|node| {
+            let shape = self.shapes.shape(node, &unit.name, self.report)?;
+            Some(self.without_value(&unit.name, &shape, Section::Output, node))
+        });
+        match tree::body(pou.node) {
+            Some((Language::Sfc, node)) => {
+                let what = say!("a function whose body is a chart");
+                self.report.say(&codes::NOT_CARRIED, &head(node), what);
+            }
+            Some((language, node)) => {
+                unit.body = statements(language, node, self.report);
+                unit.body_at = node.range();
+            }
+            None => {}
+        }
         (unit, nodes)
     }
 
@@ -338,36 +335,35 @@ impl<'a> Reader<'_, 'a> {
                 SectionKind::Global => Section::Global,
             };
             for variable in &section.variables {
-                let typed = self.typed(*variable, kind);
-                made.extend(if plain { typed.map(|v| self.declared(*variable, section, v)) } else { typed });
+                made.extend(if plain {
+                    self.declared(*variable, section, kind)
+                } else {
+                    self.typed(*variable, kind)
+                });
             }
         }
         made
     }
 
-    /// The whole declaration of a variable of which the type is known.
-    fn declared(&mut self, variable: Xml<'a>, section: &super::read::Section, mut v: Variable) -> Variable {
-        let shape = v.decl.names.first().and_then(|n| self.shapes.shape(variable, n, self.report));
-        if let (Some(name), Some(shape)) = (v.decl.names.first(), shape) {
-            v.decl = self.shapes.declaration(variable, name, &shape, self.report);
-        }
-        v.decl.kind = match v.section {
-            _ if section.is_constant() => VarKind::Const,
+    /// A variable of a function or function block with its whole declaration.
+    fn declared(
+        &mut self,
+        variable: Xml<'a>,
+        of: &super::read::Section,
+        section: Section,
+    ) -> Option<Variable> {
+        let (name, shape) = self.shape(variable)?;
+        let mut decl = self.shapes.declaration(variable, &name, &shape, self.report);
+        decl.kind = match section {
+            _ if of.is_constant() => VarKind::Const,
             Section::Input => VarKind::Input,
             Section::Output => VarKind::Output,
             _ => VarKind::Var,
         };
-        v.decl.retain = section.retain && v.decl.kind == VarKind::Var;
-        v.decl.address = address(variable, self.report);
-        st::fit(&mut v.decl).into_iter().for_each(|p| self.report.put(p));
-        v
-    }
-}
-
-fn unknown(shape: &Shape) -> Option<Name> {
-    match st::element(shape) {
-        Shape::Unknown(of) => Some(of.clone()),
-        _ => None,
+        decl.retain = of.retain && decl.kind == VarKind::Var;
+        decl.address = address(variable, self.report);
+        st::fit(&mut decl).into_iter().for_each(|p| self.report.put(p));
+        Some(Variable { section, decl, unknown: shape.unknown().cloned() })
     }
 }
 
@@ -377,40 +373,4 @@ fn bodies<'a>(pou: &Pou<'a>) -> Vec<(Language, Xml<'a>)> {
     let inline = pou.node.descendants().filter(action).flat_map(|n| kids(n).filter(|k| tag(*k) == "inline"));
     let all = std::iter::once(pou.node).chain(pou.actions.iter().copied()).chain(inline);
     all.filter_map(tree::body).filter(|(language, _)| *language != Language::Sfc).collect()
-}
-
-/// Names that only say where another name is declared: lists of global variables and enumerations.
-struct Prefixes<'n> {
-    lists: HashSet<String>,
-    globals: HashSet<String>,
-    enumerations: &'n HashSet<String>,
-    /// The variables of the unit.
-    own: HashSet<String>,
-}
-
-impl<'n> Prefixes<'n> {
-    fn of(project: &Project, enumerations: &'n HashSet<String>) -> Prefixes<'n> {
-        let lists = project.globals.iter().filter_map(|s| s.name.as_ref()).map(|n| n.to_uppercase());
-        let globals = project.globals.iter().flat_map(|s| &s.variables).filter_map(|v| name_of(*v));
-        let globals = globals.map(|n| n.to_uppercase()).collect();
-        Prefixes { lists: lists.collect(), globals, enumerations, own: HashSet::new() }
-    }
-
-    fn leave_out(&mut self, unit: &mut Unit) {
-        self.own = unit.vars.iter().flat_map(|v| &v.decl.names).map(|n| n.text.to_uppercase()).collect();
-        sfc::each(unit, self);
-    }
-}
-
-impl Visitor for Prefixes<'_> {
-    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
-        let [first, second, ..] = path.names.as_slice() else { return };
-        let upper = first.text.to_uppercase();
-        let second = bare(&second.text).0.to_uppercase();
-        let hidden = self.own.contains(&upper) || self.own.contains(&second);
-        let listed = self.lists.contains(&upper) && self.globals.contains(&second);
-        if !hidden && (listed || self.enumerations.contains(&upper)) {
-            path.names.remove(0);
-        }
-    }
 }

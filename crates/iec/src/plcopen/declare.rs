@@ -11,7 +11,7 @@ use super::tree::{Xml, head};
 use super::types::{self, Shapes};
 use super::units::{Meaning, Plan, Unit};
 use crate::report::Report;
-use crate::st::{self, Shape};
+use crate::st;
 
 /// The variables of a unit: those of the file and those of its chart.
 #[derive(Default)]
@@ -97,7 +97,7 @@ fn declaration<'a>(
     report: &mut Report,
 ) -> Option<VarDecl> {
     let shape = shapes.shape(variable, &name, report)?;
-    let of = if let Shape::Unknown(of) = st::element(&shape) { Some(of) } else { None };
+    let of = shape.unknown();
     if let Some(ty) = of.filter(|of| !plan.is_block(of)) {
         let what = say!("`{}` is of type `{}`, which has no counterpart", name.text, ty.text);
         report.say(&codes::NOT_CARRIED, &head(variable), what);

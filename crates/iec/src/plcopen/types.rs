@@ -4,19 +4,18 @@
 //! read (Project) -> here (Shapes) -> declare, code
 //! ```
 
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::ops::Range;
 
 use g7_model::codes;
 use g7_model::{Composed, Expr, ExprKind, Literal, Name, Span, Type, UnaryOp, VarDecl, say};
-
 use roxmltree::NodeId;
 
 use super::read::{Project, duration, type_of};
 use super::tree::{Xml, documentation, head, kid, kids, name_of, tag, text, word};
 use crate::nodes::line;
 use crate::report::Report;
-use crate::st::{self, Initial, MOST_DIMENSIONS, Shape, Types, declared};
+use crate::st::{self, Initial, Shape, Types, declared};
 use crate::xml::attr::{self, Text};
 
 /// The most types within each other: names that stand for names, arrays of arrays, values within values.
@@ -121,22 +120,18 @@ impl<'a> Shapes<'a> {
         shapes
     }
 
-    /// Declares a type that is no structure.
+    /// Declares a type that is not a structure.
     fn declare(&mut self, node: Xml<'a>, name: &Name, report: &mut Report) -> Option<Shape> {
         if let Some(known) = self.types.get(&name.text) {
             return Some(known.clone());
         }
         let shape = self.of(kid(node, "baseType").unwrap_or(node), name, report)?;
-        let value = kid(node, "initialValue").and_then(|v| self.initial(v, &shape, report));
-        let shape = match (shape, value) {
-            (shape, None) => shape,
-            (Shape::Simple(ty, _), Some(Initial::One(init))) => Shape::Simple(ty, Some(init)),
-            (Shape::Range(ty, limits, _), Some(Initial::One(init))) => Shape::Range(ty, limits, Some(init)),
-            (Shape::Enum(values, _), Some(Initial::One(init))) => Shape::Enum(values, Some(init)),
-            (shape, Some(_)) => {
+        let shape = match kid(node, "initialValue").and_then(|v| self.initial(v, &shape, report)) {
+            Some(init) => shape.starting_with(init).unwrap_or_else(|shape| {
                 not_carried(node, report);
                 shape
-            }
+            }),
+            None => shape,
         };
         self.types.add(name, shape.clone());
         Some(shape)
@@ -216,28 +211,25 @@ impl<'a> Shapes<'a> {
             // The dimensions of an array within it are read with that.
             let parent = dimension.parent_element();
             let own = parent.is_some_and(|p| p == array || p.parent_element() == Some(array));
-            bounds.extend(range(dimension, report).filter(|_| own));
-        }
-        let element = match self.of(kid(array, "baseType")?, of, report)? {
-            Shape::Array(inner, element) => {
-                bounds.extend(inner);
-                element
+            if own {
+                bounds.push(range(dimension, report)?);
             }
-            element => Box::new(element),
-        };
-        if bounds.is_empty() || bounds.len() > MOST_DIMENSIONS {
-            let what = say!("an array has 1 to {MOST_DIMENSIONS} dimensions");
-            report.say(&codes::NOT_CARRIED, &head(array), what);
-            return None;
         }
-        Some(Shape::Array(bounds, element))
+        let element = self.of(kid(array, "baseType")?, of, report)?;
+        let shape = Shape::array(bounds, element);
+        if shape.is_err() {
+            report.say(&codes::NOT_CARRIED, &head(array), st::no_array());
+        }
+        shape.ok()
     }
 
     fn subrange(&mut self, inner: Xml<'a>, of: &Name, report: &mut Report) -> Option<Shape> {
-        let limits = kid(inner, "range").and_then(|r| range(r, report));
-        match (self.of(kid(inner, "baseType")?, of, report)?, limits) {
-            (Shape::Simple(ty, init), Some(limits)) => Some(Shape::Range(ty, Box::new(limits), init)),
-            (shape, _) => Some(shape),
+        let limits = range(kid(inner, "range")?, report)?;
+        match self.of(kid(inner, "baseType")?, of, report)? {
+            Shape::Simple(ty, init) | Shape::Range(ty, _, init) => {
+                Some(Shape::Range(ty, Box::new(limits), init))
+            }
+            _ => None,
         }
     }
 
@@ -293,13 +285,7 @@ impl<'a> Shapes<'a> {
         shape
     }
 
-    /// The names of the enumerations, in upper case.
-    pub(super) fn enumerations(&self) -> HashSet<String> {
-        let is_one = |name: &&String| matches!(self.types.get(name), Some(Shape::Enum(..)));
-        self.nodes.keys().filter(is_one).cloned().collect()
-    }
-
-    /// A variable of a type, with its initial value and its comment.
+    /// The declaration of a variable, with its initial value and its comment.
     pub(super) fn declaration(
         &self,
         variable: Xml,
@@ -316,7 +302,7 @@ impl<'a> Shapes<'a> {
 
     /// An initial value.
     fn initial(&self, value: Xml, shape: &Shape, report: &mut Report) -> Option<Initial> {
-        self.value(value, st::element(shape), 0, report)
+        self.value(value, shape.element(), 0, report)
     }
 
     /// A value of an array has the type of its elements.
@@ -340,18 +326,20 @@ impl<'a> Shapes<'a> {
             };
             let mut own = Vec::new();
             for v in values(fields) {
-                let Some(written) = text(v, "member") else { continue };
+                let Some(written) = text(v, "member") else {
+                    no_member(v, report);
+                    continue;
+                };
                 let name = Name::new(line(&written.text), report.span(&written.at));
                 let unknown = Shape::Unknown(name.clone());
                 let member = members.and_then(|m| m.get(&name.text.to_uppercase())).unwrap_or(&unknown);
-                let one = self.value(v, st::element(member), depth + 1, report);
+                let one = self.value(v, member.element(), depth + 1, report);
                 own.extend(one.map(|one| (name, one)));
             }
             let empty = own.is_empty();
             // At the top it says as much as no value; in a list it would shift the values behind it.
             if empty && depth > 0 {
-                let what = say!("the value of a structure that names no member");
-                report.say(&codes::BAD_VALUE, &head(fields), what);
+                no_member(fields, report);
             }
             return Some(Initial::Fields(own)).filter(|_| !empty);
         }
@@ -385,6 +373,10 @@ fn not_carried(node: Xml, report: &mut Report) {
     report.say(&codes::NOT_CARRIED, &head(node), what);
 }
 
+fn no_member(node: Xml, report: &mut Report) {
+    report.say(&codes::BAD_VALUE, &head(node), say!("the value of a structure that names no member"));
+}
+
 /// The element with the members of a type that is a structure.
 fn structure(node: Xml<'_>) -> Option<Xml<'_>> {
     described(kid(node, "baseType").unwrap_or(node)).filter(|n| tag(*n) == "struct")
@@ -399,24 +391,15 @@ fn range(node: Xml, report: &mut Report) -> Option<(Expr, Expr)> {
     Some((bound("lower")?, bound("upper")?))
 }
 
-/// A value without a number has the next one (IEC 61131-3:2013, 6.4.4.4).
 fn enumeration(inner: Xml, report: &mut Report) -> Shape {
-    let (mut found, mut number) = (Vec::new(), 0);
+    let mut found = Vec::new();
     for value in values(kid(inner, "values").unwrap_or(inner)) {
         let Some(name) = name(value, report) else { continue };
-        if let Some(written) = text(value, "value").filter(|t| !t.text.trim().is_empty()) {
-            match st::expression(&written.text, &|r| written.place(&r), report).kind.whole() {
-                Some(n) => number = n,
-                None => {
-                    let what = say!("the number of an enumeration's value is written as a number");
-                    report.say(&codes::NOT_CARRIED, &written.at, what);
-                }
-            }
-        }
+        let number = text(value, "value").filter(|t| !t.text.trim().is_empty());
+        let number = number.map(|t| st::expression(&t.text, &|r| t.place(&r), report));
         found.push((name, number));
-        number = number.saturating_add(1);
     }
-    Shape::Enum(found, None)
+    st::enumeration(found, report)
 }
 
 fn values(node: Xml<'_>) -> impl Iterator<Item = Xml<'_>> {

@@ -13,7 +13,7 @@ use super::blocks::{foreign, local, lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
 use crate::nodes;
 use crate::report::Report;
-use crate::st::{Section, Types, Variable, settle};
+use crate::st::{Section, Variable, settle};
 
 /// The document of a file.
 pub(super) fn document(mut source: Source, length: usize, report: &mut Report) -> Document {
@@ -25,8 +25,7 @@ pub(super) fn document(mut source: Source, length: usize, report: &mut Report) -
     if let Some(scan) = paces.scan {
         items.push(Item::Cycle(scan, at.into()));
     }
-    items.extend(enumerations(&source.types).map(Item::Var));
-    items.extend(source.types.structures.iter().chain(&source.blocks).cloned().map(Item::Composed));
+    items.extend(types(&source));
     let mut builder = Builder { source: &source, paces, globals: HashSet::new(), report };
     items.extend(builder.globals());
     let alone = source.units.iter().filter(|u| u.kind != UnitKind::Function && builder.runs(u)).count() == 1;
@@ -124,13 +123,13 @@ impl Builder<'_> {
         let source = self.source;
         let mut items = Vec::new();
         for variable in &source.globals {
-            if self.known_type(variable) && self.globals.insert(upper(variable)) {
+            if known_type(self.source, variable, self.report) && self.globals.insert(upper(variable)) {
                 items.push(Item::Var(variable.decl.clone()));
             }
         }
         let externals = source.units.iter().flat_map(|u| &u.vars).filter(|v| v.section == Section::External);
         for variable in externals.chain(&source.externals) {
-            if !self.known_type(variable) || !self.globals.insert(upper(variable)) {
+            if !known_type(self.source, variable, self.report) || !self.globals.insert(upper(variable)) {
                 continue;
             }
             let name = variable.decl.names.first().map_or("", |n| &*n.text);
@@ -140,11 +139,6 @@ impl Builder<'_> {
             items.push(Item::Var(variable.decl.clone()));
         }
         items
-    }
-
-    /// True if the type of a variable is known; otherwise reports it.
-    fn known_type(&mut self, variable: &Variable) -> bool {
-        known_type(self.source, variable, self.report)
     }
 
     /// True if a unit is carried over as something that runs: a program, a chart, or the only
@@ -264,7 +258,7 @@ impl Builder<'_> {
     fn variables(&mut self, unit: &Unit) -> Vec<VarDecl> {
         let mut decls = Vec::new();
         for variable in unit.vars.iter().filter(|v| v.section != Section::External) {
-            if !self.known_type(variable) {
+            if !known_type(self.source, variable, self.report) {
                 continue;
             }
             let name = variable.decl.names.first().map_or("", |n| &*n.text);
@@ -421,12 +415,14 @@ fn upper(variable: &Variable) -> String {
     variable.decl.names.first().map_or(String::new(), |n| n.text.to_uppercase())
 }
 
-/// The values of enumerations as constants.
-pub(crate) fn enumerations(types: &Types) -> impl Iterator<Item = VarDecl> {
-    types.values.iter().map(|(name, number)| {
+/// The values of enumerations as constants, the structures and the function blocks.
+pub(super) fn types(source: &Source) -> impl Iterator<Item = Item> + use<'_> {
+    let values = source.types.values.iter().map(|(name, number)| {
         let init = Some(nodes::int(*number, name.at.0));
         VarDecl { init, ..VarDecl::new(VarKind::Const, vec![name.clone()], Type::Int, name.at) }
-    })
+    });
+    let composed = source.types.structures.iter().chain(&source.blocks).cloned();
+    values.map(Item::Var).chain(composed.map(Item::Composed))
 }
 
 /// Some tools allow a number as a condition: it is true unless it is 0.

@@ -39,9 +39,9 @@ use crate::report::Report;
 use crate::st::Parser;
 use crate::xml;
 
-pub(crate) use build::{enumerations, function};
+pub(crate) use build::function;
 pub(crate) use called::in_receptivity;
-pub(crate) use unit::{Part, Source, Unit, UnitKind, each};
+pub(crate) use unit::{Part, Source, Unit, UnitKind};
 pub use write::export;
 
 /// The endings of such files, without the dot.
@@ -116,9 +116,9 @@ pub(crate) fn rewrite(source: &mut Source, report: &mut Report) {
     inouts::expand(source, report);
 }
 
-/// Makes function blocks of the document of those that are used, which leave the list of units. Gives the types and
-/// function blocks.
+/// Takes the function blocks that are used out of the list of units. Gives the values of enumerations as constants, the
+/// structures, and these function blocks.
 pub(crate) fn types(source: &mut Source, report: &mut Report) -> Vec<Item> {
     blocks::expand(source, report);
-    source.types.structures.iter().chain(&source.blocks).cloned().map(Item::Composed).collect()
+    build::types(source).collect()
 }

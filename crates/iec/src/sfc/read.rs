@@ -47,20 +47,9 @@ fn item(p: &mut Parser, source: &mut Source) {
         // Some tools write a chart without a unit around it.
         "INITIAL_STEP" | "STEP" | "TRANSITION" | "ACTION" => {
             let start = p.token().start;
-            let mut unit = Unit {
-                kind: UnitKind::Program,
-                name: Name::new("Chart", p.span_of(p.token())),
-                result: None,
-                vars: std::mem::take(&mut source.globals),
-                parts: Vec::new(),
-                body: Vec::new(),
-                before: Vec::new(),
-                after: Vec::new(),
-                behind: Vec::new(),
-                body_at: 0..0,
-                foreign: None,
-                at: p.since(start),
-            };
+            let name = Name::new("Chart", p.span_of(p.token()));
+            let mut unit = Unit::new(UnitKind::Program, name, p.since(start));
+            unit.vars = std::mem::take(&mut source.globals);
             while part(p, &mut unit) {}
             unit.at = p.since(start);
             source.units.push(unit);
@@ -92,20 +81,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
             p.bump();
         }
     }
-    let mut unit = Unit {
-        kind,
-        name,
-        result,
-        vars: Vec::new(),
-        parts: Vec::new(),
-        body: Vec::new(),
-        before: Vec::new(),
-        after: Vec::new(),
-        behind: Vec::new(),
-        body_at: 0..0,
-        foreign: None,
-        at: p.since(start),
-    };
+    let mut unit = Unit { result, ..Unit::new(kind, name, p.since(start)) };
     loop {
         let before = p.mark();
         while p.eat(";") {}

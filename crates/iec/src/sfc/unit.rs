@@ -45,9 +45,9 @@ pub(crate) struct Unit {
     pub(crate) parts: Vec<Part>,
     /// The statements of a unit without a chart.
     pub(crate) body: Vec<Stmt>,
-    /// Copies of the parameters of a program from what the configuration connects them with.
+    /// Statements before a program: they copy to its inputs what the configuration connects these with.
     pub(crate) before: Vec<Stmt>,
-    /// Copies of its outputs to what the configuration connects them with.
+    /// Statements behind a program: they copy its outputs to what the configuration connects these with.
     pub(crate) after: Vec<Stmt>,
     /// Statements behind the charts that the unit calls.
     pub(crate) behind: Vec<Stmt>,
@@ -124,6 +124,24 @@ impl Source {
 }
 
 impl Unit {
+    /// A unit without variables and statements.
+    pub(crate) fn new(kind: UnitKind, name: Name, at: Span) -> Unit {
+        Unit {
+            kind,
+            name,
+            result: None,
+            vars: Vec::new(),
+            parts: Vec::new(),
+            body: Vec::new(),
+            before: Vec::new(),
+            after: Vec::new(),
+            behind: Vec::new(),
+            body_at: 0..0,
+            foreign: None,
+            at,
+        }
+    }
+
     /// The names of its variables, and its own.
     pub(crate) fn names(&self) -> Taken {
         let mut taken = Taken::default();

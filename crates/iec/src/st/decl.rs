@@ -3,10 +3,10 @@
 use g7_model::codes;
 use g7_model::{Expr, Name, Problem, Type, VarDecl, VarKind, say};
 
-use super::initial::{declared, element};
+use super::initial::declared;
 use super::lex::Kind;
 use super::parse::Parser;
-use super::shape::{Shape, Types};
+use super::shape::Types;
 
 /// The kind of section in which a variable is declared.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -102,8 +102,7 @@ impl Parser<'_> {
         let start = self.token().start;
         let shape = self.shape(function, types);
         let (decl, _) = declared(function, &shape, None, self.since(start).into());
-        let unknown = if let Shape::Unknown(of) = element(&shape) { Some(of.clone()) } else { None };
-        Some(Variable { section: Section::Output, decl, unknown })
+        Some(Variable { section: Section::Output, decl, unknown: shape.unknown().cloned() })
     }
 
     /// Skips to the next `;` after a problem.
@@ -157,7 +156,7 @@ impl Parser<'_> {
         for (name, address) in names {
             let (mut decl, problem) = declared(&name, &shape, init.as_ref(), at);
             problem.into_iter().for_each(|p| self.report.put(p));
-            let unknown = if let Shape::Unknown(of) = element(&shape) { Some(of.clone()) } else { None };
+            let unknown = shape.unknown().cloned();
             decl.kind = kind(head, &decl, address.as_ref());
             decl.address = address;
             fit(&mut decl).into_iter().for_each(|p| self.report.put(p));

@@ -141,11 +141,15 @@ pub(crate) fn repeat(row: &[(u32, Expr)], times: u32, into: &mut Vec<(u32, Expr)
     }
 }
 
-/// The type of the elements of an array; of anything else, that itself.
-pub(crate) fn element(shape: &Shape) -> &Shape {
-    match shape {
-        Shape::Array(_, element) => element,
-        other => other,
+impl Shape {
+    /// The type with an initial value; the type alone if it cannot have this one.
+    pub(crate) fn starting_with(self, init: Initial) -> Result<Shape, Shape> {
+        match (self, init) {
+            (Shape::Simple(ty, _), Initial::One(init)) => Ok(Shape::Simple(ty, Some(init))),
+            (Shape::Range(ty, limits, _), Initial::One(init)) => Ok(Shape::Range(ty, limits, Some(init))),
+            (Shape::Enum(values, _), Initial::One(init)) => Ok(Shape::Enum(values, Some(init))),
+            (other, _) => Err(other),
+        }
     }
 }
 
@@ -157,7 +161,7 @@ pub(crate) fn declared(
     at: Place,
 ) -> (VarDecl, Option<Problem>) {
     let dimensions = if let Shape::Array(bounds, _) = shape { Some(bounds) } else { None };
-    let (ty, of, default) = match element(shape) {
+    let (ty, of, default) = match shape.element() {
         Shape::Simple(ty, default) | Shape::Range(ty, _, default) => (*ty, None, default.clone()),
         Shape::Enum(values, default) => {
             // An array without a list starts with zeros, so a first value of 0 needs no list.
@@ -185,7 +189,7 @@ pub(crate) fn declared(
             say!("the initial values of `{}` do not fit its type, or cannot be carried over", name.text);
         problem = Some(Problem::new(&codes::NOT_CARRIED, at.0, what));
     }
-    let limits = match element(shape) {
+    let limits = match shape.element() {
         Shape::Range(_, limits, _) => Some(Box::new(Limits::Range(limits.0.clone(), limits.1.clone()))),
         _ => None,
     };

@@ -37,14 +37,13 @@ use crate::report::Report;
 pub type Spelling<'a> = &'a dyn Fn(&Expr) -> String;
 
 pub(crate) use decl::{Section, Variable, fit};
-pub(crate) use initial::{Initial, declared, element};
+pub(crate) use initial::{Initial, declared};
 pub(crate) use lex::Kind;
 pub use parse::Places;
 pub(crate) use parse::{Parser, foreign};
 pub use print::{Types as Known, Writer};
 pub use settle::settle;
-pub(crate) use shape::{Shape, Types};
-pub(crate) use types::MOST_DIMENSIONS;
+pub(crate) use shape::{Shape, Types, enumeration, no_array};
 pub use types::elementary;
 
 /// Reads statements of Structured Text; the text must end behind them.

@@ -152,7 +152,7 @@ impl<'a> Settler<'a> {
         }
     }
 
-    /// Settles `Step.X` and `Step.t`, perhaps preceded by the name of a chart.
+    /// Gives `Step.X` and `Step.t` their spelling; the name of a chart may stand before the step. False for other paths.
     fn step_path(&self, path: &mut Path) -> bool {
         let (chart, step, member) = match path.names.as_mut_slice() {
             [step, member] => (None, step, member),

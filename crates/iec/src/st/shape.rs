@@ -2,7 +2,12 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Composed, Expr, Name, Type};
+use g7_model::{Composed, Expr, Name, Problem, Said, Type, codes, say};
+
+use crate::report::Report;
+
+/// The most dimensions of an array.
+const MOST_DIMENSIONS: usize = 16;
 
 /// The form of a type.
 #[derive(Clone, Debug)]
@@ -18,6 +23,64 @@ pub(crate) enum Shape {
     Array(Vec<(Expr, Expr)>, Box<Shape>),
     /// An unknown function block or type.
     Unknown(Name),
+}
+
+impl Shape {
+    /// An array. An array of arrays is one with more dimensions: `a[1][2]` is `a[1, 2]`. The type of the elements alone if
+    /// it has no dimension or too many.
+    pub(crate) fn array(mut bounds: Vec<(Expr, Expr)>, element: Shape) -> Result<Shape, Shape> {
+        let element = match element {
+            Shape::Array(inner, element) => {
+                bounds.extend(inner);
+                element
+            }
+            element => Box::new(element),
+        };
+        if bounds.is_empty() || bounds.len() > MOST_DIMENSIONS {
+            return Err(*element);
+        }
+        Ok(Shape::Array(bounds, element))
+    }
+
+    /// The type of the elements of an array; of anything else, that itself.
+    pub(crate) fn element(&self) -> &Shape {
+        match self {
+            Shape::Array(_, element) => element,
+            other => other,
+        }
+    }
+
+    /// The name of the type, of an array that of its elements, if the file has not declared it before.
+    pub(crate) fn unknown(&self) -> Option<&Name> {
+        match self.element() {
+            Shape::Unknown(of) => Some(of),
+            _ => None,
+        }
+    }
+}
+
+/// Told of an array that [`Shape::array`] refuses.
+pub(crate) fn no_array() -> Said {
+    say!("an array has 1 to {MOST_DIMENSIONS} dimensions")
+}
+
+/// An enumeration. A value without a number has the next one (IEC 61131-3:2013, 6.4.4.4).
+pub(crate) fn enumeration(values: Vec<(Name, Option<Expr>)>, report: &mut Report) -> Shape {
+    let (mut numbered, mut number) = (Vec::new(), 0);
+    for (name, written) in values {
+        if let Some(written) = written {
+            match written.kind.whole() {
+                Some(n) => number = n,
+                None => {
+                    let what = say!("the number of an enumeration's value is written as a number");
+                    report.put(Problem::new(&codes::NOT_CARRIED, written.at.0, what));
+                }
+            }
+        }
+        numbered.push((name, number));
+        number = number.saturating_add(1);
+    }
+    Shape::Enum(numbered, None)
 }
 
 /// The types that a file declares, by their names in upper case.

@@ -6,10 +6,7 @@ use g7_model::{Composed, Expr, Name, Place, Type, VarDecl, say};
 use super::initial::{Initial, declared};
 use super::lex::Kind;
 use super::parse::Parser;
-use super::shape::{Shape, Types};
-
-/// The most dimensions of an array.
-pub(crate) const MOST_DIMENSIONS: usize = 16;
+use super::shape::{Shape, Types, enumeration, no_array};
 
 /// An elementary type or standard function block by its name in capitals.
 pub fn elementary(upper: &str) -> Option<Type> {
@@ -41,18 +38,13 @@ impl Parser<'_> {
                 if self.at_word("STRUCT") { self.structure(&name, types) } else { self.shape(&name, types) };
             let start = self.token().start;
             if self.eat(":=") {
-                shape = match (shape, self.initial()) {
-                    (Shape::Simple(ty, _), Initial::One(init)) => Shape::Simple(ty, Some(init)),
-                    (Shape::Range(ty, limits, _), Initial::One(init)) => Shape::Range(ty, limits, Some(init)),
-                    (Shape::Enum(values, _), Initial::One(init)) => Shape::Enum(values, Some(init)),
-                    (other, _) => {
-                        let what =
-                            say!("initial values of a structure's or array's type are not carried over");
-                        let at = self.since(start);
-                        self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
-                        other
-                    }
-                };
+                let init = self.initial();
+                shape = shape.starting_with(init).unwrap_or_else(|shape| {
+                    let what = say!("initial values of a structure's or array's type are not carried over");
+                    let at = self.since(start);
+                    self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, at, what));
+                    shape
+                });
             }
             self.eat(";");
             types.add(&name, shape);
@@ -152,30 +144,19 @@ impl Parser<'_> {
         length.unwrap_or(80)
     }
 
-    /// `(Off, Auto := 5, Hand)`: a value without a number has the next one (IEC 61131-3:2013, 6.4.4.4).
+    /// `(Off, Auto := 5, Hand)`.
     fn enumeration(&mut self) -> Shape {
         self.bump();
         let mut values = Vec::new();
-        let mut number = 0;
         while let Some(name) = self.name(say!("a value of the enumeration")) {
-            if self.eat(":=") {
-                let value = self.expr();
-                match value.kind.whole() {
-                    Some(n) => number = n,
-                    None => {
-                        let what = say!("the number of an enumeration's value is written as a number");
-                        self.report.put(g7_model::Problem::new(&codes::NOT_CARRIED, value.at.0, what));
-                    }
-                }
-            }
+            let number = if self.eat(":=") { Some(self.expr()) } else { None };
             values.push((name, number));
-            number = number.saturating_add(1);
             if !self.eat(",") {
                 break;
             }
         }
         self.expect(")");
-        Shape::Enum(values, None)
+        enumeration(values, self.report)
     }
 
     fn array(&mut self, of: &Name, types: &mut Types) -> Shape {
@@ -195,20 +176,12 @@ impl Parser<'_> {
             }
         }
         self.expect_word("OF");
-        // The dimensions of rows stand behind those of the array: `a[1][2]` is `a[1, 2]`.
-        let element = match self.shape(of, types) {
-            Shape::Array(inner, element) => {
-                bounds.extend(inner);
-                element
-            }
-            element => Box::new(element),
-        };
-        if bounds.is_empty() || bounds.len() > MOST_DIMENSIONS {
+        let element = self.shape(of, types);
+        Shape::array(bounds, element).unwrap_or_else(|element| {
             let at = self.here();
-            self.say(&codes::NOT_CARRIED, &at, say!("an array has 1 to {MOST_DIMENSIONS} dimensions"));
-            return *element;
-        }
-        Shape::Array(bounds, element)
+            self.say(&codes::NOT_CARRIED, &at, no_array());
+            element
+        })
     }
 
     /// Reads a structure, and declares its type.

@@ -4,7 +4,7 @@ use crate::show::{compiles, document, errors, import, text};
 use crate::support;
 use g7_model::{Document, FileId, Problem};
 
-/// The file means this, and runs.
+/// The file is read as this document, without errors, and the document compiles.
 fn means(name: &str, expected: &str) -> Document {
     let (found, problems) = import(name);
     assert_eq!(errors(&problems), Vec::<&str>::new(), "{name}");
@@ -13,7 +13,7 @@ fn means(name: &str, expected: &str) -> Document {
     found
 }
 
-/// A project with these types and units.
+/// Reads a project that has these types and units.
 fn project(types: &str, pous: &str) -> (Document, Vec<Problem>) {
     let file = format!(
         "<project xmlns='http://www.plcopen.org/xml/tc6_0201'><types><dataTypes>{types}</dataTypes><pous>{pous}</pous></types></project>"

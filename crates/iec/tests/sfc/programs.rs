@@ -21,7 +21,7 @@ fn parameters_are_copied_before_and_behind_each_run() {
     let text = format!("{COUNT}{}", configuration("Go AT %IX0.0 : BOOL; One : INT; Two : INT;", programs));
     let (document, problems) = import(&text);
     assert_eq!(errors(&problems), <[&str; 0]>::default());
-    // A parameter does not hide the global variable of its name, with which it is connected.
+    // The parameter `Go` of `first` gets another name, so that it does not hide the global variable `Go`.
     same(
         &document,
         "profile iec61131
