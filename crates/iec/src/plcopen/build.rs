@@ -29,7 +29,8 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
     }
     let at = report.span(&project.at);
     let mut shapes = Shapes::new(project, report);
-    let code = code::read(project, &mut shapes, report);
+    let mut code = code::read(project, &mut shapes, report);
+    let (of_code, functions) = (std::mem::take(&mut code.items), std::mem::take(&mut code.functions));
     let plan = units::plan(project, code, report);
     let plain_actions = without_blocks(root);
     let switches = if plain_actions { vec![(Switch::FinalScan(false), at.into())] } else { Vec::new() };
@@ -39,7 +40,7 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
     if let Some(cycle) = project.cycle {
         items.push(Item::Cycle(cycle, at.into()));
     }
-    items.extend(plan.code.items.iter().cloned());
+    items.extend(of_code);
     let globals = declare::globals(&plan, &mut shapes, report);
     items.extend(globals.into_iter().chain(plan.code.globals.iter().cloned()).map(Item::Var));
     let declared: Vec<_> = plan
@@ -56,7 +57,7 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
         of_charts.push(declared.of_chart);
     }
     let mut builder = Builder { coder: Coder::new(&plan, report), of_charts, plain_actions };
-    items.extend(plan.code.functions.iter().cloned());
+    items.extend(functions);
     let made = builder.everything();
     items.extend(made.pre.into_iter().map(|b| Item::Pre(Body::St(block(b, at)), at.into())));
     items.extend(made.post.into_iter().map(|b| Item::Post(Body::St(block(b, at)), at.into())));

@@ -312,10 +312,10 @@ impl<'a> Shapes<'a> {
             return None;
         }
         if let Some(list) = kid(value, "arrayValue") {
-            let times = |v| word(v, "repetitionValue").and_then(|n| n.parse::<u32>().ok()).unwrap_or(1);
             let mut own = Vec::new();
             for v in values(list) {
-                own.extend(self.value(v, element, depth + 1, report).map(|one| (times(v), one)));
+                let times = repetitions(v, report);
+                own.extend(self.value(v, element, depth + 1, report).map(|one| (times, one)));
             }
             return Some(Initial::List(own));
         }
@@ -391,7 +391,26 @@ fn range(node: Xml, report: &mut Report) -> Option<(Expr, Expr)> {
     Some((bound("lower")?, bound("upper")?))
 }
 
+/// How often a value of a list stands there.
+fn repetitions(value: Xml, report: &mut Report) -> u32 {
+    let Some(written) = text(value, "repetitionValue") else { return 1 };
+    written.text.trim().parse().unwrap_or_else(|_| {
+        let what = say!("`{}` is not a number of repetitions", line(&written.text));
+        report.say(&codes::BAD_VALUE, &written.at, what);
+        1
+    })
+}
+
 fn enumeration(inner: Xml, report: &mut Report) -> Shape {
+    let base = kid(inner, "baseType").and_then(described);
+    if let Some(base) = base.filter(|b| !matches!(plain(*b), Known::Type(Type::Int))) {
+        report.element(
+            &codes::DIFFERENT,
+            "baseType",
+            &head(base),
+            say!("the values of an enumeration are INT here"),
+        );
+    }
     let mut found = Vec::new();
     for value in values(kid(inner, "values").unwrap_or(inner)) {
         let Some(name) = name(value, report) else { continue };

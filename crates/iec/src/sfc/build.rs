@@ -26,7 +26,8 @@ pub(super) fn document(mut source: Source, length: usize, report: &mut Report) -
         items.push(Item::Cycle(scan, at.into()));
     }
     items.extend(types(&source));
-    let mut builder = Builder { source: &source, paces, globals: HashSet::new(), report };
+    let turns = Turns::new(&source);
+    let mut builder = Builder { source: &source, paces, turns, globals: HashSet::new(), report };
     items.extend(builder.globals());
     let alone = source.units.iter().filter(|u| u.kind != UnitKind::Function && builder.runs(u)).count() == 1;
     if !source.before.is_empty() {
@@ -34,12 +35,12 @@ pub(super) fn document(mut source: Source, length: usize, report: &mut Report) -
     }
     let mut charts = Vec::new();
     let (mut before, mut behind) = (Vec::new(), Vec::new());
-    for (number, unit) in source.units.iter().enumerate() {
+    for unit in &source.units {
         if !alone && builder.is_code(unit) {
             items.extend(builder.variables(unit).into_iter().map(Item::Var));
             lost_actions(unit, builder.report);
             foreign(unit, builder.report);
-            let list = if builder.is_late(number) { &mut behind } else { &mut before };
+            let list = if builder.turns.is_late(unit) { &mut behind } else { &mut before };
             list.push((unit, &unit.body));
             if !unit.behind.is_empty() {
                 behind.push((unit, &unit.behind));
@@ -84,6 +85,7 @@ struct Paces {
 
 fn paces(source: &Source, report: &mut Report) -> Paces {
     let mut units = HashMap::new();
+    let programs: HashSet<String> = source.units.iter().map(|u| u.name.text.to_uppercase()).collect();
     for instance in &source.instances {
         let task = instance.task.as_ref();
         let of = |name: &Name| source.tasks.iter().find(|t| t.name.text.eq_ignore_ascii_case(&name.text));
@@ -95,8 +97,7 @@ fn paces(source: &Source, report: &mut Report) -> Paces {
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, name.at.0, what));
         }
         let name = instance.unit.text.to_uppercase();
-        let known = source.units.iter().any(|u| u.name.text.to_uppercase() == name);
-        if !known {
+        if !programs.contains(&name) {
             let what = say!("there is no program `{}`", instance.unit.text);
             report.put(Problem::new(&codes::UNKNOWN_OBJECT, instance.unit.at.0, what));
         }
@@ -109,9 +110,39 @@ fn paces(source: &Source, report: &mut Report) -> Paces {
     Paces { scan, units }
 }
 
+/// The order in which the programs run.
+struct Turns {
+    /// The first turn of each program, by its name in upper case.
+    of: HashMap<String, usize>,
+    /// The turn of the last program that is a chart.
+    last_chart: Option<usize>,
+}
+
+impl Turns {
+    fn new(source: &Source) -> Turns {
+        let mut of = HashMap::new();
+        for (turn, instance) in source.instances.iter().enumerate() {
+            of.entry(instance.unit.text.to_uppercase()).or_insert(turn);
+        }
+        let mut turns = Turns { of, last_chart: None };
+        turns.last_chart = source.units.iter().filter(|u| u.is_chart()).filter_map(|u| turns.of(u)).max();
+        turns
+    }
+
+    fn of(&self, unit: &Unit) -> Option<usize> {
+        self.of.get(&unit.name.text.to_uppercase()).copied()
+    }
+
+    /// True if a program runs behind all charts.
+    fn is_late(&self, unit: &Unit) -> bool {
+        matches!((self.of(unit), self.last_chart), (Some(own), Some(last)) if own > last)
+    }
+}
+
 struct Builder<'a> {
     source: &'a Source,
     paces: Paces,
+    turns: Turns,
     /// The names of the file's variables, in upper case.
     globals: HashSet<String>,
     report: &'a mut Report,
@@ -167,24 +198,9 @@ impl Builder<'_> {
         true
     }
 
-    /// True if a program runs behind all charts of its resource.
-    fn is_late(&self, number: usize) -> bool {
-        let turn = |unit: &Unit| {
-            let here = |i: &super::unit::Instance| i.unit.text.eq_ignore_ascii_case(&unit.name.text);
-            self.source.instances.iter().position(here)
-        };
-        let last = self.source.units.iter().filter(|u| u.is_chart()).filter_map(turn).max();
-        let own = self.source.units.get(number).and_then(turn);
-        matches!((own, last), (Some(own), Some(last)) if own > last)
-    }
-
     /// The bodies of programs without steps, in order.
     fn code(&mut self, mut units: Vec<(&Unit, &Vec<Stmt>)>) -> Option<(Body, g7_model::Place)> {
-        let turn = |(u, _): &(&Unit, &Vec<Stmt>)| {
-            let here = |i: &super::unit::Instance| i.unit.text.eq_ignore_ascii_case(&u.name.text);
-            self.source.instances.iter().position(here).unwrap_or(usize::MAX)
-        };
-        units.sort_by_key(turn);
+        units.sort_by_key(|(unit, _)| self.turns.of(unit).unwrap_or(usize::MAX));
         let at = units.first()?.0.at;
         if units.len() > 1 {
             for (unit, _) in units.iter().filter(|u| u.1.iter().any(Stmt::returns)) {

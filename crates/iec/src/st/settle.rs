@@ -170,7 +170,8 @@ impl<'a> Settler<'a> {
     }
 
     /// Gives a path its spelling: joins elements of structures and arrays into one name, and drops the list of globals
-    /// before a name. Returns the type of what it names, if that is one of the file.
+    /// before a name, unless the name alone means another variable. Returns the type of what the path names, if that is a
+    /// type of the file.
     fn path(&self, path: &mut Path) -> Option<&'a str> {
         if self.step_path(path) {
             return None;
@@ -185,6 +186,9 @@ impl<'a> Settler<'a> {
             let (plain, index) = bare(&first.text);
             let array = || find(&self.names, &plain.to_uppercase()).map(|entry| (1, entry, index));
             let Some((n, entry, index)) = joined.or_else(array) else { continue };
+            if from > 0 && self.is_hidden(&plain.to_uppercase()) {
+                return None;
+            }
             let name = Name { text: format!("{}{}", entry.text, self.index(index)).into(), at: first.at };
             let mut behind: Vec<Name> = rest.iter().skip(n).cloned().collect();
             let of = self.members(entry.of.as_deref(), &mut behind);
@@ -192,6 +196,12 @@ impl<'a> Settler<'a> {
             return of;
         }
         None
+    }
+
+    /// True if a variable of the file cannot be named without a prefix, because one of the unit has its name.
+    fn is_hidden(&self, upper: &str) -> bool {
+        let Some((file, own)) = self.names.split_last() else { return false };
+        file.names.contains_key(upper) && find(own, upper).is_some()
     }
 
     /// Gives the names of members of a type their spelling. Returns the type of the last one.

@@ -203,6 +203,15 @@ fn what_a_type_cannot_be_is_told() {
             "<derived name='A'/>",
             "G0604",
         ),
+        // A dimension without bounds, a subrange without limits.
+        ("", "<array><dimension lower='1'/><baseType><INT/></baseType></array>", "G0604"),
+        ("", "<subrangeSigned><baseType><INT/></baseType></subrangeSigned>", "G0604"),
+        // Values of another type than INT.
+        (
+            "<dataType name='A'><baseType><enum><values><value name='x'/></values><baseType><UDINT/></baseType></enum></baseType></dataType>",
+            "<derived name='A'/>",
+            "G0614",
+        ),
         // A structure has no value as a type.
         (
             "<dataType name='A'><baseType><struct><variable name='x'><type><INT/></type></variable></struct></baseType>\
@@ -223,6 +232,25 @@ fn what_a_type_cannot_be_is_told() {
     );
     let (_, problems) = project(point, &main(&list));
     assert!(errors(&problems).contains(&"the value of a structure that names no member"), "{problems:?}");
+}
+
+#[test]
+fn values_that_cannot_be_placed_are_told() {
+    let point = "<dataType name='P'><baseType><struct><variable name='x'><type><INT/></type></variable></struct></baseType></dataType>";
+    let main = |ty: &str, value: &str| {
+        format!(
+            "<pou name='P1' pouType='program'><interface><localVars><variable name='v'><type>{ty}</type><initialValue>{value}\
+             </initialValue></variable></localVars></interface><body><ST/></body></pou>"
+        )
+    };
+    let one = "<value><simpleValue value='1'/></value>";
+    let (_, problems) =
+        project(point, &main("<derived name='P'/>", &format!("<structValue>{one}</structValue>")));
+    assert!(errors(&problems).contains(&"the value of a structure that names no member"), "{problems:?}");
+    let array = "<array><dimension lower='1' upper='2'/><baseType><INT/></baseType></array>";
+    let many = one.replace("<value>", "<value repetitionValue='n'>");
+    let (_, problems) = project("", &main(array, &format!("<arrayValue>{many}</arrayValue>")));
+    assert!(problems.iter().any(|p| *p.what == *"`n` is not a number of repetitions"), "{problems:?}");
 }
 
 #[test]

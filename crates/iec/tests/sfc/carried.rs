@@ -127,6 +127,16 @@ fn names_have_the_letters_of_their_declaration() {
 }
 
 #[test]
+fn a_list_before_a_name_stays_where_the_name_alone_is_another_variable() {
+    let text = carried(
+        "VAR_GLOBAL n : INT; m : INT; END_VAR FUNCTION_BLOCK b VAR n : INT; END_VAR n := 1; GVL.n := 2; GVL.m := 3; \
+         END_FUNCTION_BLOCK PROGRAM p VAR x : b; END_VAR x(); END_PROGRAM",
+    );
+    // The compiler does not know `GVL.n`, which is better than a value in the wrong variable.
+    assert!(text.contains("n := 1\n    GVL.n := 2\n    m := 3"), "{text}");
+}
+
+#[test]
 fn a_number_as_a_condition_is_told() {
     let (document, problems) = import(
         "PROGRAM p VAR n : INT; END_VAR INITIAL_STEP A: END_STEP STEP B: END_STEP \
