@@ -162,8 +162,11 @@ fn convert(from: Type, to: Type, x: &Typed) -> Run<Typed> {
         return done;
     }
     let done = match (&v, to) {
-        (Value::Str(s), _) => return from_text(s, to),
-        (_, Type::String(n)) => Value::Str(cut(&as_text(&v)?, usize::from(n))),
+        (Value::Str(s), _) => return super::literals::read(s, to).unwrap_or_else(|| from_text(s, to)),
+        (_, Type::String(n)) => {
+            let text = super::literals::written(from, &v).map_or_else(|| as_text(&v), Ok)?;
+            Value::Str(cut(&text, usize::from(n)))
+        }
         (Value::Int(n), t) if from.is_bits() && t != Type::Bool || t.is_bits() => {
             Value::Int(bits::transferred(*n, t))
         }

@@ -14,6 +14,7 @@ mod exec;
 mod fb;
 mod force;
 mod instances;
+mod literals;
 mod model;
 mod moments;
 mod named;

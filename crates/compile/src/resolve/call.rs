@@ -178,7 +178,10 @@ impl Resolver<'_, '_> {
         let arg = self.only_argument(name, args, at)?;
         let want = if matches!(from, Type::String(_)) { Type::String(g7_engine::TEXT) } else { from };
         let e = self.value(&arg.value, want)?;
+        let written = |ty: Type| ty.is_moment() || ty.is_bits();
         match (from, to) {
+            (_, Type::String(_)) if written(from) => self.written_as_literal(e, at),
+            (Type::String(_), _) if to == Type::Time || written(to) => self.read_as_literal(e, to, at),
             (Type::Time, _) if to.is_number() => self.time_as_number(e, to, MILLISECOND, at),
             (_, Type::Time) if from.is_number() => self.number_as_time(e, MILLISECOND, at),
             (Type::Moment(moment), _) if to.is_number() => {
@@ -198,9 +201,7 @@ impl Resolver<'_, '_> {
                     "convert it by way of a number: `{from}_TO_{between}` and `{between}_TO_{to}`"
                 )))
             }
-            (Type::Time, Type::Bool) | (Type::Bool | Type::String(_), Type::Time) => {
-                self.no_conversion(from, to, name.at.0)
-            }
+            (Type::Time, Type::Bool) | (Type::Bool, Type::Time) => self.no_conversion(from, to, name.at.0),
             (Type::Moment(_), _) | (_, Type::Moment(_)) if from != to => {
                 self.no_conversion(from, to, name.at.0)
             }

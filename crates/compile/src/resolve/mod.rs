@@ -24,6 +24,7 @@ mod charts;
 mod constant;
 mod expr;
 mod fb;
+mod literals;
 mod made;
 mod moments;
 mod operator;

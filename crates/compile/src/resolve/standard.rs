@@ -380,7 +380,7 @@ fn nested(function: Builtin, values: Vec<Expr>, at: Span) -> Typed {
 }
 
 /// Of the type of the values; a text has room for all that can come out.
-fn result_type(function: Builtin, values: &[Expr]) -> Type {
+pub(super) fn result_type(function: Builtin, values: &[Expr]) -> Type {
     let room = |k: usize| match values.get(k).map(|v| v.ty) {
         Some(Type::String(n)) => n,
         _ => 0,

@@ -216,7 +216,7 @@ fn bit_strings() {
         ("wo and 16#1_0000", "G0211"),
         ("wo . bs", "G0210"),
         ("WORD_TO_REAL(wo)", "G0202"),
-        ("STRING_TO_WORD(v)", "G0202"),
+        ("STRING_TO_WORD(v)", "@STRING_TO_WORD(v) : WORD"),
         ("a.3", "G0206"),
     ]);
 }
@@ -286,7 +286,8 @@ fn dates_and_times_of_day() {
         ("da = dt", "G0210"),
         ("da = 0", "G0210"),
         ("ABS(dt)", "G0209"),
-        ("DT_TO_STRING(dt)", "G0202"),
+        ("DATE_TO_STRING(da)", "Concat('D#', @day_text(TIME(da))) : STRING(66)"),
+        ("STRING_TO_TOD(w)", "TOD(TIME(@text_clock(@behind_TOD(w)))) : TOD"),
         ("DATE_TO_DT(da)", "G0202"),
         ("DATE_TO_WORD(da)", "G0202"),
         ("DAY_OF_WEEK(dt)", "G0209"),
@@ -311,7 +312,7 @@ fn conversions() {
         ("DINT_TO_TIME(d)", "(1000000 Mul LINT(d)) : TIME"),
         ("INT_TO_TIME(5)", "5000000 : TIME"),
         ("TIME_TO_STRING(t)", "STRING(t) : STRING"),
-        ("STRING_TO_TIME(w)", "G0202"),
+        ("STRING_TO_TIME(w)", "@STRING_TO_TIME(@behind_T(w)) : TIME"),
         ("BOOL_TO_TIME(a)", "G0202"),
         ("DINT_TO_INT(x)", "G0209"),
         ("DINT_TO_INT(70000)", "G0212"),
