@@ -24,7 +24,7 @@ DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
 # With the kinds of devices that the usual build does not have.
 WORKSPACE := --workspace --features g7/s7,g7/gpio,g7/opcua,g7-tests/types
 BUILD := cargo build --quiet $(WORKSPACE) --bin g7
-TESTS := cargo test $(WORKSPACE) --quiet --lib --bins --tests
+TESTS := cargo test $(WORKSPACE) --exclude g7-benches --quiet --lib --bins --tests
 CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
 STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
@@ -270,7 +270,7 @@ prove-table:
 ## each function and function block of OSCAT Basic beside matiec's C, about ten minutes (G7_OSCAT=… names a checkout of https://github.com/wonka929/OSCAT_OpenPLC, iec2c stands in the PATH; ONLY=… for one of them)
 oscat:
 	@test -d "$(G7_OSCAT)" || { echo "OSCAT is no package: let G7_OSCAT name a checkout of https://github.com/wonka929/OSCAT_OpenPLC"; exit 1; }
-	$(if $(ONLY),G7_ONLY=$(ONLY)) cargo test --quiet --package g7-tests --test oscat -- --nocapture
+	$(if $(ONLY),G7_ONLY=$(ONLY)) cargo test --quiet --package g7-tests --test foreign oscat:: -- --nocapture
 
 ## charts written for Beremiz, OpenPLC, matiec, IronPLC, pyecore and compilers, taken by these and run beside the engine, as a table with each refusal (G7_BEREMIZ=…, G7_XML2ST=… name folders, iec2c and ironplcc stand in the PATH, Python has lxml and pyecore; ON=… for other files; LIMIT=… seconds for each row, 600 if not said)
 interop: export G7_PEERS = $(PYTHON)

@@ -1,6 +1,6 @@
 //! Plain steps and transitions (`rows.rs`): the part of a pass that needs no marks, and scans in
 //! which nothing but one token can act. They have the same meaning as `pass.rs` and `change.rs`,
-//! but leave out what cannot occur. `tests/ways.rs` runs the same charts with and without them.
+//! but leave out what cannot occur. `tests/all/ways.rs` runs the same charts with and without them.
 
 use core::mem::take;
 

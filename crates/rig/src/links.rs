@@ -102,7 +102,7 @@ fn links(head: &Source, before: &Links, read: Reader<'_>) -> Links {
         Loader { head, before, read, numbers: HashMap::new(), others: Vec::new(), problems: Vec::new() };
     let mut ways = vec![loader.uses(&head.document, "", None)];
     while let Some(other) = loader.others.get(ways.len() - 1) {
-        // Parts of the library use only other parts (`tests/tests/linked.rs`), so the path is never looked at.
+        // Parts of the library use only other parts (`tests/tests/house/linked.rs`), so the path is never looked at.
         let path = if other.library { String::new() } else { other.path.clone() };
         let (source, through) = (Arc::clone(&other.source), other.through);
         ways.push(loader.uses(&source.document, &path, Some(through)));

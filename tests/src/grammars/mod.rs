@@ -1,6 +1,6 @@
 //! The grammars of other editors, made of the one table of words (`g7_model::words`).
 //!
-//! `make grammars` writes the files; `tests/tests/grammars.rs` sees whether they are up to date, and that they
+//! `make grammars` writes the files; `tests/tests/house/grammars.rs` sees whether they are up to date, and that they
 //! read every chart of the repository.
 
 mod charts;

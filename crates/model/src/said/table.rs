@@ -3,7 +3,7 @@
 //! A row has three lines: the English text exactly as in `say!`, the French text behind `fr `, and the Portuguese
 //! text behind `pt `. All three have the same holes; their order may differ.
 //! A hole is named as in English; a hole without a name is `{}`, the next one, or `{0}`, `{1}`, its number
-//! among all holes of the English text. `tests/tests/tidy/tongues.rs` holds the table to the sources.
+//! among all holes of the English text. `tests/tests/house/tidy/tongues.rs` holds the table to the sources.
 
 use std::collections::HashMap;
 use std::sync::OnceLock;

@@ -4,7 +4,7 @@
 //! The parser in `syntax` reads it to know reserved words and to find the nearest word to a misspelt one;
 //! completion shows it; the grammars in `editors/` are generated from it. Qualifiers, types, profiles and
 //! functions have tables of their own with a row for each (`Qualifier`, `Type`, `ProfileName`,
-//! `StandardFunction`); the words about them stand here, those about profiles beside `ProfileName`. `crates/syntax/tests/words.rs` holds the table to
+//! `StandardFunction`); the words about them stand here, those about profiles beside `ProfileName`. `crates/syntax/tests/all/words.rs` holds the table to
 //! the parser. What a word means in full stands in `docs/book/src/language/grammar.md`.
 
 mod begin;

@@ -1,7 +1,7 @@
 //! The contents of an io file as data: the kinds of devices with their settings, their points, and what a
 //! channel says of each point. The wizard of the page makes its forms of it.
 //!
-//! The reader (`device`, `broker`, `point`) decides what is accepted. `tests/catalogue.rs` holds the two
+//! The reader (`device`, `broker`, `point`) decides what is accepted. `tests/all/catalogue.rs` holds the two
 //! together: it gives the reader each setting as it is written here, with its limits, its words and its
 //! default, and compares what the reader asks for with what stands here. A kind without a row fails it.
 
