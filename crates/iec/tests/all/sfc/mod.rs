@@ -17,6 +17,8 @@ mod programs;
 mod types;
 mod written;
 
+use crate::support;
+
 use std::path::Path;
 
 use g7_model::{Document, FileId, Problem, Severity};
