@@ -34,6 +34,7 @@ pub use change::{Anchors, Edit, Refusal, Source};
 pub use copy::{copy, copy_placed};
 use g7_model::say;
 pub use gesture::{Alignment, Branching, ChartSort, Gesture, Row, Sort, What};
+pub use gestures::Renaming;
 pub use history::History;
 pub use id::{End, ItemId, NoId, Part};
 pub use splice::{Splice, spliced};

@@ -19,6 +19,7 @@
 //! - If the text has syntax errors, names come from the latest text without them.
 #![forbid(unsafe_code)]
 
+pub mod across;
 pub mod cases;
 pub mod completion;
 mod file;

@@ -17,6 +17,7 @@ mod settings;
 mod table;
 mod unread;
 
+pub use rename::Renaming;
 pub(crate) use rename::{rename, rename_at};
 pub(crate) use table::renamed_row;
 

@@ -7,8 +7,8 @@
 
 use g7_compile::references::{Use, Written};
 use g7_compile::{Definition, References, references};
-use g7_model::{Item, Said, Span, codes, say};
-use g7_syntax::{Tree, show_name, show_path_name, show_step_name};
+use g7_model::{Document, FileId, Item, Said, Span, codes, say};
+use g7_syntax::{show_name, show_path_name, show_step_name};
 
 use crate::change::{Edit, Refusal, Source, refuse};
 use crate::id::{ItemId, Part};
@@ -25,26 +25,103 @@ pub(crate) fn rename(
     name: Option<&str>,
     to: &str,
 ) -> Result<Edit, Refusal> {
-    let to = to.trim();
-    if to.is_empty() {
-        return refuse(say!("a name cannot be empty"));
-    }
     let refs = references(source.document);
     let definition = defined(source, &refs, id, name)?;
     let edit = everywhere(source, &refs, definition, to)?;
-    Ok(Edit { select: selected(id, to), ..edit })
+    Ok(Edit { select: selected(id, to.trim()), ..edit })
 }
 
 /// Renames the part that is named at a byte of the text.
 pub(crate) fn rename_at(source: &Source<'_>, at: usize, to: &str) -> Result<Edit, Refusal> {
-    let to = to.trim();
-    if to.is_empty() {
-        return refuse(say!("a name cannot be empty"));
-    }
     let refs = references(source.document);
     match refs.at(u32::try_from(at).unwrap_or(u32::MAX)).cloned() {
         Some(definition) => everywhere(source, &refs, definition, to),
         None => refuse(say!("there is no name here that can be changed")),
+    }
+}
+
+/// A part under its old and its new name, for a change in the texts of one or more files.
+#[derive(Clone, Debug)]
+pub struct Renaming {
+    old: Definition,
+    new: Definition,
+    to: String,
+}
+
+impl Renaming {
+    /// Another name for a part.
+    ///
+    /// # Errors
+    ///
+    /// The name is empty.
+    pub fn new(old: Definition, to: &str) -> Result<Renaming, Refusal> {
+        let to = to.trim();
+        if to.is_empty() {
+            return refuse(say!("a name cannot be empty"));
+        }
+        Ok(Renaming { new: renamed(&old, to), old, to: to.to_owned() })
+    }
+
+    /// True if the part has this name already.
+    pub fn is_nothing(&self) -> bool {
+        self.new == self.old
+    }
+
+    /// The two names, without what stands before them.
+    pub fn names(&self) -> [&str; 2] {
+        [last_name(&self.old), last_name(&self.new)]
+    }
+
+    /// Refuses if the new name is that of another part.
+    ///
+    /// # Errors
+    ///
+    /// It is.
+    pub fn free(&self, document: &Document, refs: &References) -> Result<(), Refusal> {
+        if refs.declaration(&self.new).is_some() || taken(document, &self.new) {
+            return refuse(there_already(&self.old, &self.to));
+        }
+        Ok(())
+    }
+
+    /// The change of the text of one file of a document: each use there, written with the new name.
+    ///
+    /// # Errors
+    ///
+    /// A place cannot have the name.
+    pub fn splices(&self, refs: &References, file: FileId, text: &str) -> Result<Vec<Splice>, Refusal> {
+        let uses = refs.uses_of(&self.old).filter(|found| found.at.file == file);
+        let splices = uses.map(|found| written(text, found, &self.to)).collect::<Result<_, _>>()?;
+        Ok(tidied(text, splices))
+    }
+
+    /// Refuses unless each name of a document refers to the same part after the change as before. `splices` gives the
+    /// changes of the text of a file.
+    ///
+    /// # Errors
+    ///
+    /// A name refers to another part.
+    pub fn keeps_the_rest<'s>(
+        &self,
+        before: &References,
+        after: &References,
+        splices: impl Fn(FileId) -> &'s [Splice],
+    ) -> Result<(), Refusal> {
+        let meant =
+            |d: &Definition| if *d == self.old { self.new.clone() } else { within(d, &self.old, &self.new) };
+        let same = before.all().len() == after.all().len()
+            && before.all().iter().zip(after.all()).all(|(a, b)| {
+                b.definition == meant(&a.definition)
+                    && a.at.file == b.at.file
+                    && shifted(splices(a.at.file), a.at) == b.at.start as usize
+            });
+        if same {
+            return Ok(());
+        }
+        refuse(say!(
+            "with this name something would mean another thing than before: `{}` is in use",
+            last_name(&self.new)
+        ))
     }
 }
 
@@ -55,37 +132,27 @@ fn everywhere(
     definition: Definition,
     to: &str,
 ) -> Result<Edit, Refusal> {
-    let new = renamed(&definition, to);
-    if new == definition {
+    let renaming = Renaming::new(definition, to)?;
+    if renaming.is_nothing() {
         return Ok(Edit::default());
     }
-    if refs.declaration(&new).is_some() || taken(source, &new) {
-        return refuse(there_already(&definition, to));
-    }
-    whole(source, refs, &definition, &new)?;
-    let mut splices = Vec::new();
-    for found in refs.uses_of(&definition) {
-        splices.push(written(source.text, found, to)?);
-    }
-    let splices = tidied(source.text, splices);
+    renaming.free(source.document, refs)?;
+    whole(source, refs, &renaming)?;
+    let splices = renaming.splices(refs, FileId(0), source.text)?;
     let tree = read(source, &splices).ok_or_else(|| Refusal::new(say!("the name cannot be written here")))?;
-    judge(source, refs, &tree, (&definition, &new), &splices)?;
+    same_problems(source, &splices, &tree)?;
+    renaming.keeps_the_rest(refs, &references(&tree.document), |_| &splices)?;
     Ok(Edit { splices, read: Some(Box::new(tree)), ..Edit::default() })
 }
 
 /// Refuses if a place that could not be read may hold the name.
 #[inline(never)]
-fn whole(
-    source: &Source<'_>,
-    refs: &References,
-    definition: &Definition,
-    new: &Definition,
-) -> Result<(), Refusal> {
+fn whole(source: &Source<'_>, refs: &References, renaming: &Renaming) -> Result<(), Refusal> {
     if source.problems.iter().any(|p| p.code == &codes::TOO_MANY_PROBLEMS) {
         return refuse(mended_first());
     }
-    for name in [last_name(definition), last_name(new)] {
-        if let Some(place) = unread(source, refs, definition, name) {
+    for name in renaming.names() {
+        if let Some(place) = unread(source, refs, &renaming.old, name) {
             let line = source.text.get(..place.start).unwrap_or_default().matches('\n').count() + 1;
             return refuse(say!(
                 "line {line} may name `{name}`; this is known only when the syntax errors are corrected"
@@ -225,7 +292,7 @@ fn none_such(definition: &Definition) -> Said {
 
 /// True if a part of another kind in the same name space has the name.
 #[inline(never)]
-fn taken(source: &Source<'_>, new: &Definition) -> bool {
+fn taken(document: &Document, new: &Definition) -> bool {
     let (chart, name) = match new {
         Definition::Variable { chart, name }
         | Definition::Action { chart, name }
@@ -237,7 +304,7 @@ fn taken(source: &Source<'_>, new: &Definition) -> bool {
     match chart {
         Some(chart) => {
             use g7_model::ChartItem;
-            let home = source.document.charts().find(|c| *c.name.text == *chart);
+            let home = document.charts().find(|c| *c.name.text == *chart);
             home.is_some_and(|c| {
                 c.items.iter().any(|i| match i {
                     ChartItem::Var(v) => v.names.iter().any(is),
@@ -247,7 +314,7 @@ fn taken(source: &Source<'_>, new: &Definition) -> bool {
                 })
             })
         }
-        None => source.document.items.iter().any(|i| match i {
+        None => document.items.iter().any(|i| match i {
             Item::Var(v) => v.names.iter().any(is),
             Item::Action(a) => is(&a.name),
             Item::Section(s) => is(&s.name),
@@ -303,31 +370,6 @@ fn direct(found: &Use, old: &str, to: &str) -> Result<String, Refusal> {
     let letters: String = part.chars().take_while(|c| c.is_ascii_alphabetic()).collect();
     *part = format!("{letters}{number}");
     Ok(format!("{head}{}", parts.join(".")))
-}
-
-/// Checks that after the change every name refers to the same part as before.
-#[inline(never)]
-fn judge(
-    source: &Source<'_>,
-    before: &References,
-    after: &Tree,
-    (definition, new): (&Definition, &Definition),
-    splices: &[Splice],
-) -> Result<(), Refusal> {
-    same_problems(source, splices, after)?;
-    let now = references(&after.document);
-    let meant = |d: &Definition| if d == definition { new.clone() } else { within(d, definition, new) };
-    let same = before.all().len() == now.all().len()
-        && before.all().iter().zip(now.all()).all(|(a, b)| {
-            b.definition == meant(&a.definition) && shifted(splices, a.at) == b.at.start as usize
-        });
-    if !same {
-        return refuse(say!(
-            "with this name something would mean another thing than before: `{}` is in use",
-            last_name(new)
-        ));
-    }
-    Ok(())
 }
 
 /// The definition of a part under the new name of the chart, type or plant that contains it.

@@ -2,13 +2,17 @@
 
 use std::collections::HashMap;
 
-use g7_ide::{File, fixes, references};
+use g7_edit::spliced;
+use g7_ide::{File, Positions, across, fixes, references};
+use g7_model::{Said, say};
+use g7_rig::Source;
 use lsp_types::{
     CodeAction, CodeActionKind, CodeActionOrCommand, CodeActionParams, DocumentFormattingParams,
     PrepareRenameResponse, RenameParams, TextDocumentPositionParams, TextEdit, Uri, WorkspaceEdit,
 };
 
 use super::beside;
+use super::heads::Heads;
 use super::open::{Open, diagnostic};
 use super::places;
 
@@ -49,19 +53,60 @@ pub(super) fn changeable(open: &Open, p: &TextDocumentPositionParams) -> Option<
     Some(PrepareRenameResponse::RangeWithPlaceholder { range: places::range(file, &range), placeholder })
 }
 
-/// The change of a name in its file, and in the io files that wire the variables of that file.
+/// The change of a name in all files of its project, and in the io files that wire their variables.
 #[allow(clippy::mutable_key_type, reason = "the type of the protocol; an address is never changed")]
 pub(super) fn rename(open: &Open, p: &RenameParams) -> Result<Option<WorkspaceEdit>, String> {
     let Some((file, byte)) = at(open, &p.text_document_position) else { return Ok(None) };
     let uri = &p.text_document_position.text_document.uri;
-    let splices = references::rename(file, byte, &p.new_name).map_err(|e| e.in_language(file.language))?;
+    let changes = renamed(open, uri, (file, byte), &p.new_name).map_err(|e| e.in_language(file.language))?;
+    Ok(Some(WorkspaceEdit::new(changes.into_iter().collect())))
+}
+
+fn renamed(
+    open: &Open,
+    uri: &Uri,
+    (file, byte): (&File, usize),
+    to: &str,
+) -> Result<Vec<(Uri, Vec<TextEdit>)>, Said> {
     let name = references::changeable(file, byte).map(|(_, name)| name).unwrap_or_default();
-    let mut changes: HashMap<Uri, Vec<TextEdit>> = beside::renamed(uri, file, &name, &splices)
-        .map_err(|e| e.in_language(file.language))?
-        .into_iter()
-        .collect();
-    changes.insert(uri.clone(), places::edits(file, &splices));
-    Ok(Some(WorkspaceEdit::new(changes)))
+    let project = Heads::of(open, uri)?;
+    let Some((declared, at)) = project.sources.first().and_then(|own| across::declared(own, byte)) else {
+        return in_one(uri, file, byte, (&name, to));
+    };
+    let heads: Vec<&Source> = project.sources.iter().filter(|head| across::has(head, &declared)).collect();
+    let alone = matches!(heads.as_slice(), [] | [_]);
+    if alone && heads.iter().all(|head| head.files().count() == 1) {
+        return in_one(uri, file, byte, (&name, to));
+    }
+    let changes = across::rename(&heads, (&declared, &at), to)?;
+    let mut all = Vec::new();
+    for (path, splices) in &changes {
+        let source = heads.iter().find_map(|head| across::file(head, path));
+        let (Some(source), Some(uri)) = (source, project.address(path)) else { continue };
+        all.push((uri, places::edits_of(&Positions::new(&source.text), &source.text, splices)));
+    }
+    for head in &heads {
+        let (Some(uri), Some(after)) = (project.address(&head.name), across::changed(head, &changes)) else {
+            continue;
+        };
+        all.extend(beside::renamed(&uri, head, &after, &name)?);
+    }
+    Ok(all)
+}
+
+/// The change of a name that no other file knows. The text may have errors elsewhere.
+fn in_one(
+    uri: &Uri,
+    file: &File,
+    byte: usize,
+    (name, to): (&str, &str),
+) -> Result<Vec<(Uri, Vec<TextEdit>)>, Said> {
+    let splices = references::rename(file, byte, to)?;
+    let text = spliced(file.text(), &splices).ok_or_else(|| say!("the change does not fit the text"))?;
+    let after = Source::native(&file.source.name, text.into_bytes(), 0).linked_like(&file.source);
+    let mut all = beside::renamed(uri, &file.source, &after, name)?;
+    all.push((uri.clone(), places::edits(file, &splices)));
+    Ok(all)
 }
 
 /// The file and the byte at a place.

@@ -3,8 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use g7_edit::{Splice, spliced};
-use g7_ide::{File, Positions};
+use g7_ide::Positions;
 use g7_model::{Said, say};
 use g7_rig::{Bench, Options, Source};
 use lsp_types::{Range, TextEdit, Uri};
@@ -14,20 +13,19 @@ use super::places;
 /// Greatest length of an io file that is read, in bytes.
 const MOST: u64 = 4 << 20;
 
-/// The changes of io files that follow from a changed name of the chart.
+/// The changes of io files that follow from a changed name of a chart, which is given before and after the change.
 pub(super) fn renamed(
     uri: &Uri,
-    file: &File,
+    before: &Source,
+    after: &Source,
     name: &str,
-    splices: &[Splice],
 ) -> Result<Vec<(Uri, Vec<TextEdit>)>, Said> {
     let Some(path) = places::path(uri) else { return Ok(Vec::new()) };
     let io_files = io_files(&path);
     if io_files.is_empty() {
         return Ok(Vec::new());
     }
-    let after = spliced(file.text(), splices).ok_or_else(|| say!("the change does not fit the text"))?;
-    let benches = bench(file, file.text()).zip(bench(file, &after));
+    let benches = bench(before).zip(bench(after));
     let mut changes = Vec::new();
     for (io, text) in io_files {
         let Some((old, new)) = &benches else {
@@ -69,9 +67,8 @@ fn io_files(chart: &Path) -> Vec<(String, String)> {
     names.iter().filter(mine).filter_map(read).collect()
 }
 
-/// The chart of a file with its names, with this text, without its plant; `None` if it has errors.
-fn bench(file: &File, text: &str) -> Option<Bench> {
-    let source = Source::native(&file.source.name, text.as_bytes().to_vec(), 0).linked_like(&file.source);
+/// The chart of a file with its names, without its plant; `None` if it has errors.
+fn bench(source: &Source) -> Option<Bench> {
     let options = Options { plant: Some("none"), ..Options::default() };
-    g7_rig::build(&source, &options).ok()?.0
+    g7_rig::build(source, &options).ok()?.0
 }

@@ -17,6 +17,7 @@ mod actions;
 mod answers;
 mod beside;
 mod follow;
+mod heads;
 mod open;
 mod places;
 mod shows;

@@ -96,6 +96,11 @@ impl Open {
         }
     }
 
+    /// The open files, with their addresses.
+    pub(super) fn all(&self) -> impl Iterator<Item = (&Uri, &File)> {
+        self.texts.values().filter_map(|text| Some((&text.uri, text.file.as_ref().ok()?)))
+    }
+
     /// The file at a path, if it is open.
     fn at(&self, path: &Path) -> Option<&File> {
         let text = self.texts.values().find(|t| places::path(&t.uri).as_deref() == Some(path))?;

@@ -1,7 +1,7 @@
 //! Places of a text as the protocol has them: lines, and UTF-16 code units on a line.
 
 use std::ops;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use g7_edit::Splice;
 use g7_ide::{File, Positions};
@@ -38,7 +38,12 @@ pub(super) fn bytes(file: &File, range: Range) -> ops::Range<usize> {
 
 /// A change of the text of a file.
 pub(super) fn edits(file: &File, splices: &[Splice]) -> Vec<TextEdit> {
-    let edit = |s: &Splice| TextEdit::new(range(file, &(s.start..s.end)), s.insert.clone());
+    edits_of(&file.positions, file.text(), splices)
+}
+
+/// A change of a text.
+pub(super) fn edits_of(positions: &Positions, text: &str, splices: &[Splice]) -> Vec<TextEdit> {
+    let edit = |s: &Splice| TextEdit::new(range_of(positions, text, &(s.start..s.end)), s.insert.clone());
     splices.iter().map(edit).collect()
 }
 
@@ -54,18 +59,29 @@ pub(super) fn path(uri: &Uri) -> Option<PathBuf> {
     Some(PathBuf::from(path))
 }
 
-/// The address of a file by its path from the folder of another one; the parts of the path are separated by `/`.
-pub(super) fn beside(uri: &Uri, path: &str) -> Option<Uri> {
+/// A part of a path, as an address has it.
+fn escaped(part: &str) -> String {
     let plain = |b: u8| b.is_ascii_alphanumeric() || matches!(b, b'-' | b'.' | b'_' | b'~');
     let written = |b: u8| if plain(b) { char::from(b).to_string() } else { format!("%{b:02X}") };
+    part.bytes().map(written).collect()
+}
+
+/// The address of a file by its whole path.
+pub(super) fn uri(path: &Path) -> Option<Uri> {
+    let path = path.to_str()?.replace('\\', "/");
+    let parts: Vec<String> = path.trim_start_matches('/').split('/').map(escaped).collect();
+    format!("file:///{}", parts.join("/")).parse().ok()
+}
+
+/// The address of a file by its path from the folder of another one; the parts of the path are separated by `/`.
+pub(super) fn beside(uri: &Uri, path: &str) -> Option<Uri> {
     let (mut folder, _) = uri.as_str().rsplit_once('/')?;
     let mut rest = path;
     while let Some(up) = rest.strip_prefix("../") {
         (folder, _) = folder.rsplit_once('/')?;
         rest = up;
     }
-    let parts = rest.split('/').map(|part| part.bytes().map(written).collect::<String>());
-    format!("{folder}/{}", parts.collect::<Vec<_>>().join("/")).parse().ok()
+    format!("{folder}/{}", rest.split('/').map(escaped).collect::<Vec<_>>().join("/")).parse().ok()
 }
 
 #[cfg(test)]
@@ -79,6 +95,8 @@ mod tests {
         assert_eq!(beside("line 2/é%.g7").as_str(), "file:///plant/x/line%202/%C3%A9%25.g7");
         assert_eq!(beside("../b.g7").as_str(), "file:///plant/b.g7");
         assert_eq!(path(&beside("line 2/é%.g7")), Some(PathBuf::from("/plant/x/line 2/é%.g7")));
+        let whole = uri(std::path::Path::new("/plant/x/line 2/é%.g7")).expect("an address");
+        assert_eq!(whole, beside("line 2/é%.g7"));
         assert_eq!(path(&"untitled:a".parse().expect("an address")), None);
     }
 }

@@ -8,6 +8,7 @@ pub(crate) use output::escape;
 use std::io::Write;
 
 use g7_model::say;
+use g7_rig::testing::Coverage;
 
 use crate::cli::{Format, Test};
 use crate::failure::{Failure, Verdict};
@@ -43,6 +44,7 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
         results.covered.push((done.name, done.coverage));
         Ok(())
     })?;
+    results.covered = Coverage::by_file(&results.covered);
     if let Some(path) = &args.junit {
         files::write(path, output::junit(&results).as_bytes())?;
     }

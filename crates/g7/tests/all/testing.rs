@@ -287,6 +287,31 @@ test \"left\" { pulse a }
 }
 
 #[test]
+fn a_file_that_several_use_is_covered_by_the_tests_of_all() {
+    let folder = Folder::new();
+    folder.write("g7.toml", "");
+    folder.write(
+        "axis.g7",
+        "input a : BOOL\nchart Axis {\n  initial step 0\n  step 1\n  step 2\n  0 -> 1 when a\n  1 -> 2 when not a\n}\n",
+    );
+    folder.write("tests/one.g7", "use '../axis.g7'\ntest \"on\" { set a := TRUE  scan 2 }\n");
+    folder.write("tests/two.g7", "use '../axis.g7'\ntest \"on and off\" {\n  pulse a\n  scan 2\n}\n");
+    let report = |paths: &[&str]| {
+        let given: Vec<&str> = ["test", "--coverage"].into_iter().chain(paths.iter().copied()).collect();
+        let out = folder.g7(&given).is(0).out.clone();
+        assert_eq!(out.lines().filter(|l| l.trim_end().ends_with("axis.g7")).count(), 1, "{out}");
+        let lines = out.lines().map(|l| l.split_whitespace().collect::<Vec<_>>().join(" "));
+        lines.filter(|l| l.ends_with("steps") || l.contains("not reached")).collect::<Vec<String>>()
+    };
+    let one = report(&["tests/one.g7"]);
+    assert!(one.iter().any(|l| l == "2 of 3 steps"), "{one:?}");
+    assert!(one.iter().any(|l| l == "not reached: step 2 (axis.g7:5:8)"), "{one:?}");
+    let both = report(&["."]);
+    assert!(both.iter().any(|l| l == "3 of 3 steps"), "{both:?}");
+    assert!(both.iter().all(|l| !l.contains("not reached")), "{both:?}");
+}
+
+#[test]
 fn every_action_of_a_step_counts_for_itself() {
     let chart = "\
 input a, c : BOOL

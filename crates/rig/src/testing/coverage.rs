@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use g7_compile::ir::{Action, ActionKind, Unit};
 use g7_engine::{Code, Contribution, State, StepId, eval};
-use g7_model::{Said, Span, say};
+use g7_model::{FileId, Said, Span, say};
 
 use crate::Bench;
 use crate::Source;
@@ -18,6 +18,13 @@ pub struct Row {
     pub place: String,
     /// The number of scans in which it was reached.
     pub hits: u64,
+}
+
+impl Row {
+    /// The file in which it stands.
+    fn file(&self) -> &str {
+        self.place.rsplitn(3, ':').nth(2).unwrap_or(&self.place)
+    }
 }
 
 /// A kind of elements.
@@ -108,6 +115,42 @@ impl Coverage {
         ]
     }
 
+    /// The coverage of several heads as that of each file in which elements stand: what the tests of several heads reach
+    /// in a file that they use counts together. Files come in the order in which they are met; those of the heads are
+    /// all there.
+    pub fn by_file(heads: &[(String, Coverage)]) -> Vec<(String, Coverage)> {
+        let mut files: Vec<(String, Coverage)> = Vec::new();
+        let mut places: BTreeMap<String, usize> = BTreeMap::new();
+        let mut place = |files: &mut Vec<(String, Coverage)>, file: &str| {
+            *places.entry(file.to_owned()).or_insert_with(|| {
+                files.push((file.to_owned(), Coverage::default()));
+                files.len() - 1
+            })
+        };
+        for (head, coverage) in heads {
+            place(&mut files, head);
+            for (sort, rows) in coverage.sorts() {
+                for (at, row) in rows {
+                    let number = place(&mut files, row.file());
+                    let Some((_, of)) = files.get_mut(number) else { continue };
+                    let at = Span { file: FileId(0), ..*at };
+                    let none = Row { hits: 0, ..row.clone() };
+                    of.rows_mut(sort).entry(at).or_insert(none).hits += row.hits;
+                }
+            }
+        }
+        files
+    }
+
+    fn rows_mut(&mut self, sort: Sort) -> &mut Rows {
+        match sort {
+            Sort::Step => &mut self.steps,
+            Sort::Transition => &mut self.transitions,
+            Sort::Action => &mut self.actions,
+            Sort::Branch => &mut self.branches,
+        }
+    }
+
     /// All elements of a file, none of them reached.
     pub fn of(bench: &Bench, source: &Source) -> Coverage {
         let mut coverage = Coverage::default();
@@ -148,13 +191,7 @@ impl Coverage {
     /// Counts what the latest scan reached.
     pub(super) fn see(&mut self, bench: &Bench, state: &mut State) {
         for (sort, at) in self.reached(bench, state) {
-            let rows = match sort {
-                Sort::Step => &mut self.steps,
-                Sort::Transition => &mut self.transitions,
-                Sort::Action => &mut self.actions,
-                Sort::Branch => &mut self.branches,
-            };
-            if let Some(row) = rows.get_mut(&at) {
+            if let Some(row) = self.rows_mut(sort).get_mut(&at) {
                 row.hits += 1;
             }
         }

@@ -8,7 +8,7 @@ use std::collections::HashSet;
 
 use g7_model::visit_mut::{self, Visitor};
 use g7_model::{
-    Chart, ChartItem, Document, Expr, ExprKind, Item, Nanos, Problem, Said, Transition, codes, say,
+    Chart, ChartItem, Document, Expr, ExprKind, Item, Nanos, Problem, Said, Transition, Type, codes, say,
 };
 
 use crate::nodes;
@@ -71,7 +71,8 @@ impl Visitor for Gone {
     }
 }
 
-/// Tells of conversions between times and numbers, which count milliseconds here and seconds in matiec.
+/// Tells of conversions between times and numbers, which count milliseconds here and seconds in matiec, and of those to
+/// and from STRING, whose texts matiec writes otherwise unless they are of whole numbers and BOOL.
 pub(super) fn seconds(document: &mut Document, problems: &mut Vec<Problem>) {
     struct Conversions<'p>(&'p mut Vec<Problem>);
     impl Visitor for Conversions<'_> {
@@ -81,7 +82,18 @@ pub(super) fn seconds(document: &mut Document, problems: &mut Vec<Problem>) {
             let from = ["TIME_TO_", "TOD_TO_", "TIME_OF_DAY_TO_"].iter().any(|word| name.starts_with(word));
             let to = ["_TO_TIME", "_TO_TOD", "_TO_TIME_OF_DAY"].iter().any(|word| name.ends_with(word));
             if (from || to) && !["STRING", "DT_TO", "DATE_AND"].iter().any(|word| name.contains(word)) {
-                let what = say!("{} counts in seconds there, and in milliseconds here", Said::foreign(name));
+                let what = say!(
+                    "{} counts in seconds there, and in milliseconds here",
+                    Said::foreign(name.as_str())
+                );
+                self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
+            }
+            let other = match name.split_once("_TO_") {
+                Some((other, "STRING")) | Some(("STRING", other)) => Type::named(other),
+                _ => None,
+            };
+            if other.is_some_and(|ty| !ty.is_integer() && ty != Type::Bool) {
+                let what = say!("the texts of {} have another form there", Said::foreign(name));
                 self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
             }
         }
