@@ -1,5 +1,5 @@
 //! Engines that are broken on purpose: each defect changes the tables, so that the same scan
-//! follows another rule. A conformance case counts if it fails on one of them; `tests/broken.rs`
+//! follows another rule. A conformance case counts if it fails on one of them; `tests/laws/broken.rs`
 //! names the case for each defect.
 
 use std::cell::{Cell, RefCell};

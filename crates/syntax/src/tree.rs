@@ -10,7 +10,7 @@
 //! # What must hold
 //!
 //! After a change the tree is exactly what [`Tree::read`] makes of the new text: document, places, notes
-//! and problems, in their order. The property test in `tests/tree.rs` compares all of them.
+//! and problems, in their order. The property test in `tests/all/tree.rs` compares all of them.
 
 use std::ops::Range;
 

@@ -448,7 +448,7 @@ impl Make {
         self.call(Builtin::Left, vec![text, count])
     }
 
-    /// What stands behind the first characters of a text.
+    /// The part of a text behind its first characters.
     fn behind(self, text: Expr, count: Expr) -> Expr {
         self.call(Builtin::Delete, vec![text, count, self.long(1)])
     }

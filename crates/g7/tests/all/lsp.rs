@@ -210,7 +210,7 @@ fn names_lead_into_the_files_that_are_used() {
     let hover = at(&mut editor, "textDocument/hover", 6, 15);
     assert!(hover["contents"]["value"].as_str().is_some_and(|t| t.contains("input go : BOOL")), "{hover}");
     let rename = json!({
-        "textDocument": { "uri": uri("chart.g7") }, "position": { "line": 11, "character": 9 }, "newName": "x",
+        "textDocument": { "uri": uri("chart.g7") }, "position": { "line": 10, "character": 10 }, "newName": "x",
     });
     let refused = editor.answer("textDocument/rename", rename);
     let places = "library/debounce.g7";

@@ -272,31 +272,28 @@ mod tests {
     fn two_files_that_use_each_other_are_a_circle() {
         let files = [
             ("lib.rs", "mod a; mod b; mod c;"),
-            ("a.rs", "use crate::tidy::b::B; pub struct A;"),
+            ("a.rs", "use crate::b::B; pub struct A;"),
             ("b.rs", "fn f() -> super::a::A { super::a::A }"),
-            ("c.rs", "use crate::tidy::{a::A, b::{self, B}};"),
+            ("c.rs", "use crate::{a::A, b::{self, B}};"),
         ];
         assert_eq!(found(&files), [["a -> b", "b -> a"]]);
     }
 
     #[test]
     fn a_file_and_the_one_that_holds_it_may_be_a_circle() {
-        let files = [("lib.rs", "mod a; fn f() { a::f() }"), ("a.rs", "use crate::tidy::f;")];
+        let files = [("lib.rs", "mod a; fn f() { a::f() }"), ("a.rs", "use crate::f;")];
         assert_eq!(found(&files), [["the root -> a", "a -> the root"]]);
     }
 
     #[test]
     fn a_name_that_is_handed_on_is_that_of_its_file() {
-        let files = [
-            ("lib.rs", "mod a; mod b; pub use a::A;"),
-            ("a.rs", "pub struct A;"),
-            ("b.rs", "use crate::tidy::A;"),
-        ];
+        let files =
+            [("lib.rs", "mod a; mod b; pub use a::A;"), ("a.rs", "pub struct A;"), ("b.rs", "use crate::A;")];
         assert_eq!(found(&files), Vec::<Vec<String>>::new());
         let files = [
             ("lib.rs", "mod a; mod b; pub use b::B;"),
-            ("a.rs", "use crate::tidy::B; pub struct A;"),
-            ("b.rs", "use crate::tidy::a::A; pub struct B;"),
+            ("a.rs", "use crate::B; pub struct A;"),
+            ("b.rs", "use crate::a::A; pub struct B;"),
         ];
         assert_eq!(found(&files), [["a -> b", "b -> a"]]);
     }
@@ -305,11 +302,11 @@ mod tests {
     fn comments_texts_and_tests_use_nothing() {
         let files = [
             ("lib.rs", "mod a; mod b;"),
-            ("a.rs", "use crate::tidy::b::B;"),
+            ("a.rs", "use crate::b::B;"),
             (
                 "b.rs",
-                "// use crate::tidy::a::A;\nconst T: &str = \"use crate::tidy::a::A;\"; const C: char = '\"';\n\
-                 #[cfg(test)]\nmod tests { use crate::tidy::a::A; }",
+                "// use crate::a::A;\nconst T: &str = \"use crate::a::A;\"; const C: char = '\"';\n\
+                 #[cfg(test)]\nmod tests { use crate::a::A; }",
             ),
         ];
         assert_eq!(found(&files), Vec::<Vec<String>>::new());
