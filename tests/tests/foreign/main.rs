@@ -1,4 +1,4 @@
-//! The tests beside other programs, as one program: each program is linked for itself, which takes longer than to compile it.
+//! The tests beside other programs, in one program: to link a program for each file takes longer than to compile them.
 
 mod codegen;
 mod families;

@@ -1,4 +1,4 @@
-//! The laws that hold for all charts, as one program: each program is linked for itself, which takes longer than to compile it.
+//! The laws that hold for all charts, in one program: to link a program for each file takes longer than to compile them.
 
 mod agree;
 mod asked;

@@ -10,6 +10,7 @@ mod fixes;
 mod log;
 mod watch;
 
+use std::collections::HashSet;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -46,8 +47,13 @@ fn once(args: &Check, paths: &[PathBuf]) -> Result<Looked, Failure> {
     let mut out = anstream::stdout().lock();
     let (mut tally, mut all, mut fixable) = (Tally::default(), Vec::new(), 0);
     let mut used = Vec::new();
+    let mut known = HashSet::new();
     for path in paths {
-        let checked = one(args, path)?;
+        let mut checked = one(args, path)?;
+        // A mistake of a file that several use is told once.
+        let key = |source: &Source, p: &Problem| (source.place(p.at), p.code.id, p.what.to_string());
+        checked.problems.retain(|p| !known.contains(&key(&checked.source, p)));
+        known.extend(checked.problems.iter().map(|p| key(&checked.source, p)));
         tally.add(Tally::of(&checked.problems));
         used.extend(checked.source.files().skip(1).map(|(name, _)| PathBuf::from(name)));
         // A mistake of a used file is solved where that file is checked.

@@ -106,9 +106,10 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
     if !args.output.as_deref().is_some_and(is_folder) {
         files::refuse_foreign(args.output.as_deref(), &[&path], args.force)?;
     }
-    if source.has_errors() {
-        talk!("{}", report::text(&source, &source.problems).trim_end());
-        talk!("{}: {}", source.name, Tally::of(&source.problems));
+    if source.has_errors() || source.others().iter().any(|other| other.source.has_errors()) {
+        let problems = source.read_problems();
+        talk!("{}", report::text(&source, &problems).trim_end());
+        talk!("{}: {}", source.name, Tally::of(&problems));
         return Ok(Verdict::Found);
     }
     let charts = chosen(args, &source)?;
@@ -138,12 +139,12 @@ fn picture(
             let why = say!("--pages is for pictures; a file of draw.io has a page for each chart");
             return Err(Failure::Usage(why));
         }
-        return Ok(g7_draw::drawio(&source.document, charts, options).into_bytes());
+        return Ok(g7_draw::drawio(source.whole(), charts, options).into_bytes());
     }
-    let drawings = g7_draw::draw_all(&source.document, charts, options);
+    let drawings = g7_draw::draw_all(source.whole(), charts, options);
     let svg = match drawings.as_slice() {
         [one] => g7_draw::svg(one, options),
-        several => g7_draw::sheet(&source.document, several, options),
+        several => g7_draw::sheet(source.whole(), several, options),
     };
     paper::print(form, svg, scale)
 }
@@ -170,9 +171,12 @@ fn options(args: &Draw) -> Options {
     }
 }
 
-/// The chosen charts, in the order of the text.
+/// The chosen charts of a file and of those that it uses, in the order of the text.
 fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure> {
-    let all: Vec<&Chart> = source.document.charts().collect();
+    let of_library = |c: &&Chart| source.others().iter().any(|o| o.library && o.source.id() == c.at.0.file);
+    let named = |c: &Chart| args.charts.iter().any(|n| *c.name.text == **n);
+    // The frames of the library are drawn by name alone.
+    let all: Vec<&Chart> = source.whole().charts().filter(|c| !of_library(c) || named(c)).collect();
     if let Some(name) = args.charts.iter().find(|n| !all.iter().any(|c| *c.name.text == ***n)) {
         let names: Vec<&str> = all.iter().map(|c| &*c.name.text).collect();
         let (file, names) = (&source.name, names.join(", "));
@@ -186,8 +190,7 @@ fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure
     if all.is_empty() {
         return Err(Failure::Usage(say!("{} has no chart to draw", raw(&source.name))));
     }
-    let wanted = |c: &&Chart| args.charts.is_empty() || args.charts.iter().any(|n| *c.name.text == **n);
-    Ok(all.into_iter().filter(wanted).collect())
+    Ok(all.into_iter().filter(|c| args.charts.is_empty() || named(c)).collect())
 }
 
 /// True for an existing folder, and for a name that only a folder can have.

@@ -40,6 +40,23 @@ fn one_chart_alone_has_no_title_and_nothing_of_the_other() {
 }
 
 #[test]
+fn charts_of_files_that_are_used_are_drawn_as_well() {
+    let folder = Folder::with("use 'lib/drain.g7'\nuse gemma\n\nchart Fill {\n  initial step 1\n}\n");
+    folder.write("lib/drain.g7", "chart Drain {\n  initial step 7\n}\n");
+    folder.g7(&["draw", "-o", "pictures/"]).is(0);
+    let mut names: Vec<String> = std::fs::read_dir(folder.path("pictures"))
+        .expect("the folder")
+        .map(|entry| entry.expect("a file").file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    assert_eq!(names, ["Drain.svg", "Fill.svg"], "and none of the library");
+    assert!(folder.g7(&["draw", "--chart", "Gemma"]).is(0).out.contains(">F1"));
+    folder.write("lib/drain.g7", "chart Drain {\n  initial step\n}\n");
+    let run = folder.g7(&["draw"]);
+    assert!(run.is(1).err.contains("drain.g7:2"), "{}", run.err);
+}
+
+#[test]
 fn the_name_of_the_output_says_the_form() {
     let folder = Folder::with(TWO);
     for (name, magic) in

@@ -37,10 +37,23 @@ fn each_command_sees_the_whole() {
     assert!(folder.read("c/g7.h").len() > 100, "{:?}", folder.names());
     let written = folder.g7(&["export", "main.g7", "-o", "main.xml", "--to", "plcopen"]);
     assert!(folder.read("main.xml").contains("Axis"), "{} {}", written.out, written.err);
-    // Its own text is printed and drawn, and no other.
+    // Its own text is printed, and no other.
     folder.g7(&["fmt", "main.g7"]).is(0);
     assert_eq!(folder.read("main.g7"), MAIN);
     folder.g7(&["prove", "lib/axis.g7"]).is(0);
+}
+
+#[test]
+fn a_mistake_in_a_file_that_several_use_is_told_once() {
+    let folder = machine();
+    folder.write("other.g7", MAIN);
+    folder.write("lib/axis.g7", AXIS.replace("not order[i]", "not ordre[i]"));
+    let ran = folder.g7(&["check", "main.g7", "other.g7", "lib/axis.g7"]);
+    assert_eq!(ran.is(1).out.matches("G0202").count(), 1, "{}", ran.out);
+    assert!(ran.err.contains("1 error"), "{}", ran.err);
+    let all: serde_json::Value =
+        serde_json::from_str(&folder.g7(&["check", ".", "--format", "json"]).is(1).out).expect("JSON");
+    assert_eq!((&all["errors"], all["problems"].as_array().map(Vec::len)), (&1.into(), Some(1)), "{all}");
 }
 
 #[test]

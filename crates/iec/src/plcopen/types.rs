@@ -20,8 +20,6 @@ use crate::xml::attr::{self, Text};
 
 /// The most types within each other: names that stand for names, arrays of arrays, values within values.
 const DEEPEST: u32 = 64;
-/// The longest string that a variable may hold.
-const MOST_TEXT: u16 = 1024;
 
 /// The first look at a declared type.
 pub(super) enum Known {
@@ -48,9 +46,9 @@ pub(super) fn plain(inner: Xml) -> Known {
     match tag(inner).as_str() {
         "derived" => named(word(inner, "name").unwrap_or("")),
         "typeName" => named(attr::content(inner).text.trim()),
-        "string" | "wstring" | "STRING" | "WSTRING" => {
+        kind @ ("string" | "wstring" | "STRING" | "WSTRING") => {
             let length = word(inner, "length").and_then(|l| l.parse().ok()).unwrap_or(80);
-            Known::Type(Type::String(length.clamp(1, MOST_TEXT)))
+            Known::Type(st::text(length, kind.eq_ignore_ascii_case("wstring")))
         }
         "array" | "struct" | "enum" | "subrangeSigned" | "subrangeUnsigned" | "pointer" => Known::None,
         other => named(other),
@@ -59,9 +57,9 @@ pub(super) fn plain(inner: Xml) -> Known {
 
 fn named(name: &str) -> Known {
     let upper = name.to_ascii_uppercase();
-    if let Some((_, length)) = upper.strip_prefix("STRING").and_then(|r| r.split_once(['[', '('])) {
+    if let Some((kind @ ("STRING" | "WSTRING"), length)) = upper.split_once(['[', '(']) {
         let length = length.trim_end_matches([']', ')']).trim().parse().unwrap_or(80);
-        return Known::Type(Type::String(u16::clamp(length, 1, MOST_TEXT)));
+        return Known::Type(st::text(length, kind == "WSTRING"));
     }
     // Beremiz marks values that are also shown on a screen.
     let upper = upper.strip_prefix("HMI_").unwrap_or(&upper).to_string();

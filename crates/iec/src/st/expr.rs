@@ -250,6 +250,9 @@ impl Parser<'_> {
     /// A function applied to its arguments; becomes an operator where one exists.
     pub(crate) fn applied(&mut self, name: Name, upper: &str, args: Args, start: u32) -> Tree {
         let at = self.since(start);
+        let narrow = of_wide_text(upper);
+        let name = narrow.as_ref().map_or(name.clone(), |narrow| Name::new(narrow.as_str(), name.at.0));
+        let upper = narrow.as_deref().unwrap_or(upper);
         let height = args.height.saturating_add(u32::try_from(args.list.len()).unwrap_or(u32::MAX));
         let kind = match signs::applied(upper, args.list, at) {
             Ok(operator) => operator.kind,
@@ -339,6 +342,13 @@ fn by_number(upper: &str) -> Option<(String, String)> {
         _ => return None,
     };
     Some((format!("{from}_TO_{number}"), format!("{number}_TO_{to}")))
+}
+
+/// The conversion of a STRING that does what one of a WSTRING does: both are one type here (decision 68).
+fn of_wide_text(upper: &str) -> Option<String> {
+    let (from, to) = upper.split_once("_TO_")?;
+    let narrow = |ty: &str| if ty == "WSTRING" { "STRING" } else { ty }.to_owned();
+    (from == "WSTRING" || to == "WSTRING").then(|| format!("{}_TO_{}", narrow(from), narrow(to)))
 }
 
 /// The arguments of a call, with the height of the highest.

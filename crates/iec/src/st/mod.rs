@@ -45,6 +45,7 @@ pub use print::{Types as Known, Writer};
 pub use settle::settle;
 pub(crate) use shape::{Shape, Types, enumeration, no_array};
 pub use types::elementary;
+pub(crate) use types::text;
 
 /// Reads statements of Structured Text; the text must end behind them.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {

@@ -11,9 +11,14 @@ use super::shape::{Shape, Types, enumeration, no_array};
 /// An elementary type or standard function block by its name in capitals.
 pub fn elementary(upper: &str) -> Option<Type> {
     match upper {
-        "WSTRING" => Some(Type::STRING),
+        "WSTRING" => Some(text(80, true)),
         _ => Type::named(upper),
     }
+}
+
+/// The type of a text of so many characters. One of a WSTRING has up to three bytes in UTF-8 (decision 68).
+pub(crate) fn text(length: u16, wide: bool) -> Type {
+    Type::String(if wide { length.saturating_mul(3) } else { length })
 }
 
 impl Parser<'_> {
@@ -95,7 +100,7 @@ impl Parser<'_> {
         }
         let Some(name) = self.name(say!("a type")) else { return Shape::Simple(Type::Bool, None) };
         match elementary(&upper) {
-            Some(Type::String(_)) => Shape::Simple(Type::String(self.length()), None),
+            Some(Type::String(_)) => Shape::Simple(text(self.length(), upper == "WSTRING"), None),
             // Values with a type: `INT (Off := 0, Hand := 2)`; `INT (Least..7)` is a subrange.
             Some(Type::Int)
                 if self.at("(") && self.ahead(1).kind == Kind::Word && !self.ahead_is(2, "..") =>

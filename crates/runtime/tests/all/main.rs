@@ -1,4 +1,4 @@
-//! The tests of the runtime, as one program: each program is linked for itself, which takes longer than to compile it.
+//! The tests of the runtime, in one program: to link a program for each file takes longer than to compile them.
 
 mod c;
 mod helpers;

@@ -2,7 +2,7 @@
 
 use crate::plcopen::show::{compiles, document, errors, import, text};
 use crate::support;
-use g7_model::{Document, FileId, Problem};
+use g7_model::{Document, FileId, Problem, Type};
 
 /// The file is read as this document, without errors, and the document compiles.
 fn means(name: &str, expected: &str) -> Document {
@@ -353,4 +353,21 @@ fn a_block_that_expects_a_global_variable_has_one() {
     let (found, problems) = project("", &format!("{block}{main}"));
     assert_eq!(problems.iter().map(|p| p.code.id).collect::<Vec<_>>(), ["G0610"]);
     compiles(&found);
+}
+
+#[test]
+fn lengths_of_texts_are_kept() {
+    let of = |ty: &str| {
+        let vars = format!(
+            "<pou name='P' pouType='program'><interface><localVars>{}</localVars></interface><body><ST><xhtml>t := '';</xhtml></ST></body></pou>",
+            variable("t", ty)
+        );
+        let (found, _) = project("", &vars);
+        let vars =
+            found.items.iter().filter_map(|i| if let g7_model::Item::Var(v) = i { Some(v.ty) } else { None });
+        vars.collect::<Vec<_>>()
+    };
+    assert_eq!(of("<string length='2000'/>"), [Type::String(2000)]);
+    assert_eq!(of("<wstring length='10'/>"), [Type::String(30)], "up to three bytes each");
+    assert_eq!(of("<wstring/>"), [Type::String(240)]);
 }

@@ -1,6 +1,7 @@
 //! Types of the file: arrays, structures, and function blocks without a chart.
 
 use g7_compile::compile;
+use g7_model::Type;
 
 use super::carried::same;
 use super::{carried, errors, import};
@@ -340,4 +341,30 @@ fn a_call_runs_while_en_is_true() {
     ] {
         assert!(text.contains(part), "{part} in {text}");
     }
+}
+
+#[test]
+fn a_wide_text_is_a_text_with_room_for_its_characters() {
+    let text = "
+PROGRAM p
+  VAR a : WSTRING; b : WSTRING[20]; c : WSTRING(5) := \"é\"; d : STRING[20]; n : INT; END_VAR
+  INITIAL_STEP Wait: Set(N); END_STEP
+  TRANSITION FROM Wait TO Wait := n = 3; END_TRANSITION
+  ACTION Set:
+    b := STRING_TO_WSTRING(d);
+    d := WSTRING_TO_STRING(b);
+    n := WSTRING_TO_INT(a);
+  END_ACTION
+END_PROGRAM";
+    let (document, problems) = import(text);
+    assert_eq!(errors(&problems), Vec::<&str>::new());
+    // Up to three bytes each (decision 68).
+    let lengths: Vec<Type> = document
+        .charts()
+        .flat_map(|c| c.vars())
+        .map(|v| v.ty)
+        .filter(|ty| matches!(ty, Type::String(_)))
+        .collect();
+    assert_eq!(lengths, [240, 60, 15, 20].map(Type::String));
+    assert_eq!(compile(&document).1, []);
 }
