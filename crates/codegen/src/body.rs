@@ -561,7 +561,31 @@ impl Body<'_> {
     /// Works a text out at a place that it does not read.
     fn text_into(&mut self, e: &Term, place: Expr, cap: u16) {
         let to = [place.passed(), Expr::size(cap.into())];
+        let copy = |from: Expr| {
+            let args = [vec![from], to.to_vec()].concat();
+            vec![Stmt::Do(Expr::call("text_copy", args))]
+        };
         match e {
+            Term::Call(Builtin::Sel, _, list) => {
+                let [c, a, b] = list.as_slice() else {
+                    return self.places.cannot(say!("SEL without its operands"));
+                };
+                let (c, a, b) = (self.truth(c), self.text(a), self.text(b));
+                self.out.push(Stmt::If(c, copy(b), copy(a)));
+            }
+            Term::Call(Builtin::Mux, _, list) => {
+                let Some((k, rest)) = list.split_first() else {
+                    return self.places.cannot(say!("MUX without its operands"));
+                };
+                let k = self.number(k, Num::I64);
+                let texts: Vec<Expr> = rest.iter().map(|e| self.text(e)).collect();
+                let chosen = texts.into_iter().enumerate().rev().fold(Vec::new(), |other, (i, from)| {
+                    let this = k.clone().bin(Bin::Eq, Expr::size(i));
+                    // The last one needs no question: the number was checked before.
+                    if other.is_empty() { copy(from) } else { vec![Stmt::If(this, copy(from), other)] }
+                });
+                self.out.extend(chosen);
+            }
             Term::Call(f, _, list) => {
                 let texts = match f {
                     Builtin::Concat | Builtin::Insert | Builtin::Replace => 2,
