@@ -154,7 +154,7 @@ impl Resolver<'_, '_> {
             let fraction = m.rest(nanos(), SECOND);
             let zeros = (1..=8).map(|k| {
                 let ends = compare(BinaryOp::Eq, m.rest(nanos(), 10i128.pow(k)), 0, m.at);
-                choice(ends, m.long(0), m.long(1), m.at)
+                converted(ends, Type::Lint)
             });
             let kept = zeros.fold(m.long(9), |kept, zero| m.sub(kept, zero));
             let digits = m.joined(vec![m.text("."), m.left(m.padded(fraction.clone(), 9), kept)]);
@@ -300,7 +300,7 @@ impl Resolver<'_, '_> {
                 list.push((wrong, m.or(m.var(wrong, Type::Bool), too_fine)));
                 list.push((sum, m.sub(m.sub(v(sum), m.mul(whole, nanos)), fraction)));
                 let end = m.add(v(place), m.long(unit.len() as i128 - 1));
-                list.push((units, m.add(v(units), choice(found(), m.long(0), m.long(1), m.at))));
+                list.push((units, m.add(v(units), converted(found(), Type::Lint))));
                 list.push((rest, m.behind(t(), choice(found(), m.long(0), end, m.at))));
             }
             let left = compare(BinaryOp::Gt, m.length(t()), 0, m.at);

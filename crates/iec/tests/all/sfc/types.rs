@@ -1,7 +1,7 @@
 //! Types of the file: arrays, structures, and function blocks without a chart.
 
 use g7_compile::compile;
-use g7_model::Type;
+use g7_model::{Item, Type};
 
 use super::carried::same;
 use super::{carried, errors, import};
@@ -359,12 +359,8 @@ END_PROGRAM";
     let (document, problems) = import(text);
     assert_eq!(errors(&problems), Vec::<&str>::new());
     // Up to three bytes each (decision 68).
-    let lengths: Vec<Type> = document
-        .charts()
-        .flat_map(|c| c.vars())
-        .map(|v| v.ty)
-        .filter(|ty| matches!(ty, Type::String(_)))
-        .collect();
+    let declared = document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some(v.ty) } else { None });
+    let lengths: Vec<Type> = declared.filter(|ty| matches!(ty, Type::String(_))).collect();
     assert_eq!(lengths, [240, 60, 15, 20].map(Type::String));
     assert_eq!(compile(&document).1, []);
 }
