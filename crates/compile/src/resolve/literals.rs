@@ -352,8 +352,11 @@ impl Resolver<'_, '_> {
                 list.push((wrong, m.or(m.var(wrong, Type::Bool), missing)));
                 list.push((sum, binary(BinaryOp::Add, more, digit, Type::Ulint, m.at)));
             }
-            let large = compare(BinaryOp::Gt, number(), most, m.at);
-            let wrong = m.or(m.var(wrong, Type::Bool), large);
+            let mut wrong = m.var(wrong, Type::Bool);
+            // No ULINT is too large for an LWORD.
+            if Type::Ulint.bounds().is_some_and(|(_, largest)| most < largest) {
+                wrong = m.or(wrong, compare(BinaryOp::Gt, number(), most, m.at));
+            }
             list.push((result, converted(unless(wrong, number(), m.at), to)));
             list
         });
@@ -480,7 +483,10 @@ impl Make {
     /// The digit number `k` of a ULINT to the base 16, from the right.
     fn digit(self, number: &Expr, k: u32) -> Expr {
         let whole = |n| constant(n, Type::Ulint, self.at);
-        let shifted = binary(BinaryOp::Div, number.clone(), whole(1 << (4 * k)), Type::Ulint, self.at);
+        let shifted = match k {
+            0 => number.clone(),
+            k => binary(BinaryOp::Div, number.clone(), whole(1 << (4 * k)), Type::Ulint, self.at),
+        };
         let digit = binary(BinaryOp::Mod, shifted, whole(16), Type::Ulint, self.at);
         let place = self.add(converted(digit, Type::Lint), self.long(1));
         self.call(Builtin::Mid, vec![self.text(DIGITS), self.long(1), place])

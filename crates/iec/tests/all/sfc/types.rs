@@ -354,6 +354,7 @@ PROGRAM p
     b := STRING_TO_WSTRING(d);
     d := WSTRING_TO_STRING(b);
     n := WSTRING_TO_INT(a);
+    c := b;
   END_ACTION
 END_PROGRAM";
     let (document, problems) = import(text);
