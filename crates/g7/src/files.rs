@@ -195,16 +195,33 @@ const DEEPEST: u32 = 32;
 
 fn walk(folder: &Path, found: &mut Vec<PathBuf>, depth: u32) -> Result<(), Failure> {
     for path in list(folder)? {
-        let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
-        // A link to a folder is not followed, because it may lead back here.
-        let folder = fs::symlink_metadata(&path).is_ok_and(|m| m.is_dir());
-        if folder && !hidden && depth < DEEPEST {
-            walk(&path, found, depth + 1)?;
-        } else if is_chart(&path) && path.is_file() {
-            found.push(path);
+        match met(&path) {
+            Met::Folder if depth < DEEPEST => walk(&path, found, depth + 1)?,
+            Met::Chart => found.push(path),
+            Met::Folder | Met::Other => {}
         }
     }
     Ok(())
+}
+
+/// The kinds of entries of a folder in which charts are looked for.
+pub(crate) enum Met {
+    /// A folder to look into.
+    Folder,
+    /// A .g7 file.
+    Chart,
+    /// Anything else.
+    Other,
+}
+
+/// Tells what a search for charts does with an entry of a folder.
+pub(crate) fn met(path: &Path) -> Met {
+    let hidden = path.file_name().is_some_and(|n| n.to_string_lossy().starts_with('.'));
+    // A link to a folder is not followed, because it may lead back here.
+    if fs::symlink_metadata(path).is_ok_and(|m| m.is_dir()) {
+        return if hidden { Met::Other } else { Met::Folder };
+    }
+    if is_chart(path) && path.is_file() { Met::Chart } else { Met::Other }
 }
 
 fn list(folder: &Path) -> Result<Vec<PathBuf>, Failure> {

@@ -30,27 +30,35 @@ pub fn declared(head: &Source, at: usize) -> Option<(String, std::ops::Range<usi
     Some((head.home(place).name.clone(), place.bytes()))
 }
 
-/// The file of this name among a head and those that it uses; a part of the library is none.
+/// The file with this name: the head itself, or a file that it uses. Parts of the library are not searched.
 pub fn file<'h>(head: &'h Source, name: &str) -> Option<&'h Source> {
     own(head).find(|source| source.name == name)
 }
 
-/// True if a file is part of the whole of a head.
+/// True if the file with this name is the head itself, or a file that it uses.
 pub fn has(head: &Source, name: &str) -> bool {
     file(head, name).is_some()
 }
 
-/// The change that gives the part that is declared at a place another name, in all files of these heads. The name of
-/// each [`Source`] is its path from one folder.
+/// A new name for a part.
+pub struct Renamed<'h> {
+    /// The changes of the texts; none if the part has this name already.
+    pub changes: Changes,
+    /// Each head that the change concerns, before and after it.
+    pub heads: Vec<(&'h Source, Source)>,
+}
+
+/// Gives the part that is declared at a place of a file another name, in all files of the heads that have this file. The
+/// name of each [`Source`] is its path from one folder.
 ///
 /// # Errors
 ///
 /// The name is taken, something would mean another part, or a file with errors may use the name.
-pub fn rename(
-    heads: &[&Source],
+pub fn rename<'h>(
+    heads: &[&'h Source],
     (name, at): (&str, &std::ops::Range<usize>),
     to: &str,
-) -> Result<Changes, Said> {
+) -> Result<Renamed<'h>, Said> {
     let mut changes = Changes::new();
     let mut judged = Vec::new();
     for head in heads {
@@ -62,7 +70,7 @@ pub fn rename(
         };
         let renaming = Renaming::new(part, to)?;
         if renaming.is_nothing() {
-            return Ok(Changes::new());
+            return Ok(Renamed { changes: Changes::new(), heads: Vec::new() });
         }
         renaming.free(head.whole(), &refs)?;
         for source in own(head) {
@@ -72,17 +80,18 @@ pub fn rename(
             let splices = renaming.splices(&refs, source.id(), &source.text)?;
             merge(changes.entry(source.name.clone()).or_default(), splices);
         }
-        judged.push((head, refs, renaming));
+        judged.push((*head, refs, renaming));
     }
     changes.retain(|_, splices| !splices.is_empty());
-    for (head, refs, renaming) in judged {
-        judge(head, &refs, &renaming, &changes)?;
-    }
-    Ok(changes)
+    let after = |(head, refs, renaming): (&'h Source, References, Renaming)| {
+        Ok((head, judged_after(head, &refs, &renaming, &changes)?))
+    };
+    let heads = judged.into_iter().map(after).collect::<Result<_, Said>>()?;
+    Ok(Renamed { changes, heads })
 }
 
 /// A head after the change.
-pub fn changed(head: &Source, changes: &Changes) -> Option<Source> {
+fn changed(head: &Source, changes: &Changes) -> Option<Source> {
     let text = |source: &Source| match changes.get(&source.name) {
         Some(splices) => spliced(&source.text, splices),
         None => Some(source.text.clone()),
@@ -96,8 +105,13 @@ pub fn changed(head: &Source, changes: &Changes) -> Option<Source> {
     Some(after)
 }
 
-/// Refuses a change after which a name of the head means another part, or a text cannot be read.
-fn judge(head: &Source, refs: &References, renaming: &Renaming, changes: &Changes) -> Result<(), Said> {
+/// A head after the change. Refuses a change after which one of its names means another part, or a text cannot be read.
+fn judged_after(
+    head: &Source,
+    refs: &References,
+    renaming: &Renaming,
+    changes: &Changes,
+) -> Result<Source, Said> {
     let after = changed(head, changes).ok_or_else(|| say!("the change does not fit the text"))?;
     let errors = |source: &Source| {
         let mut problems = source.read_problems();
@@ -116,7 +130,7 @@ fn judge(head: &Source, refs: &References, renaming: &Renaming, changes: &Change
         name.and_then(|name| changes.get(name)).map_or(&[][..], Vec::as_slice)
     };
     renaming.keeps_the_rest(refs, &references(after.whole()), of_file)?;
-    Ok(())
+    Ok(after)
 }
 
 /// The part that is declared at a place.

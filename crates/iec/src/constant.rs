@@ -6,7 +6,7 @@ use std::fmt::Write;
 /// The type before the `#` of a literal, in upper or lower case: of `INT#5`, `T#5s`, `D#2026-11-28`.
 pub fn literal_type(word: &str) -> Option<Type> {
     let upper = word.to_ascii_uppercase();
-    if matches!(&*upper, "T" | "TIME" | "LT" | "LTIME") {
+    if Nanos::WORDS.contains(&&*upper) {
         return Some(Type::Time);
     }
     if let Some(moment) = Moment::of_literal(&upper) {

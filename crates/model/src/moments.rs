@@ -15,12 +15,12 @@ pub enum Moment {
     Dt,
 }
 
-/// Days from 0000-03-01 to 1970-01-01.
-const ERA: i64 = 719_468;
-/// Days of 400 years.
-const CYCLE: i64 = 146_097;
-
 impl Moment {
+    /// Days from 0000-03-01 to 1970-01-01.
+    pub const ERA: i64 = 719_468;
+    /// Days of 400 years.
+    pub const CYCLE: i64 = 146_097;
+
     /// All of them, in the order of the standard's table.
     pub const ALL: [Moment; 3] = [Moment::Date, Moment::Tod, Moment::Dt];
 
@@ -33,14 +33,19 @@ impl Moment {
         }
     }
 
-    /// The type before the `#` of a literal, in capitals: `D`, `DATE`, `TOD`, `TIME_OF_DAY`, and the long ones of IEC 61131-3:2013.
-    pub fn of_literal(word: &str) -> Option<Moment> {
-        match word {
-            "D" | "DATE" | "LD" | "LDATE" => Some(Moment::Date),
-            "TOD" | "TIME_OF_DAY" | "LTOD" | "LTIME_OF_DAY" => Some(Moment::Tod),
-            "DT" | "DATE_AND_TIME" | "LDT" | "LDATE_AND_TIME" => Some(Moment::Dt),
-            _ => None,
+    /// The words before the `#` of a literal, in capitals, with the long ones of IEC 61131-3:2013. A text of the type begins
+    /// with the first one.
+    pub const fn words(self) -> [&'static str; 4] {
+        match self {
+            Moment::Date => ["D", "DATE", "LD", "LDATE"],
+            Moment::Tod => ["TOD", "TIME_OF_DAY", "LTOD", "LTIME_OF_DAY"],
+            Moment::Dt => ["DT", "DATE_AND_TIME", "LDT", "LDATE_AND_TIME"],
         }
+    }
+
+    /// The type of a literal by the word before its `#`, in capitals.
+    pub fn of_literal(word: &str) -> Option<Moment> {
+        Moment::ALL.into_iter().find(|moment| moment.words().contains(&word))
     }
 
     /// True if the type has this value: a DATE is a whole number of days, a TOD lies within one day.
@@ -187,13 +192,13 @@ fn time_of(text: &str) -> Result<i64, Said> {
 fn days_from(year: i64, month: i64, day: i64) -> i64 {
     let year = if month <= 2 { year - 1 } else { year };
     let of_year = (153 * ((month + 9) % 12) + 2) / 5 + day - 1;
-    year * 365 + year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400) + of_year - ERA
+    year * 365 + year.div_euclid(4) - year.div_euclid(100) + year.div_euclid(400) + of_year - Moment::ERA
 }
 
 /// Year, month and day of a day that is so many days after 1970-01-01.
 fn civil(days: i64) -> (i64, i64, i64) {
-    let days = days + ERA;
-    let (cycle, of_cycle) = (days.div_euclid(CYCLE), days.rem_euclid(CYCLE));
+    let days = days + Moment::ERA;
+    let (cycle, of_cycle) = (days.div_euclid(Moment::CYCLE), days.rem_euclid(Moment::CYCLE));
     // Each 4 years (1,460 days) end with a leap day; each 100 years (36,524 days) do not; each 400 years (146,096 days) do.
     let of_century = (of_cycle - of_cycle / 1_460 + of_cycle / 36_524 - of_cycle / 146_096) / 365;
     let of_year = of_cycle - (365 * of_century + of_century / 4 - of_century / 100);

@@ -42,6 +42,9 @@ impl Nanos {
         ("ns", Nanos(1)),
     ];
 
+    /// The words before the `#` of a duration in IEC 61131-3, in capitals: `T#5s` (2003, 2.2.3.1; 2013, table 8).
+    pub const WORDS: [&str; 4] = ["T", "TIME", "LT", "LTIME"];
+
     /// So many nanoseconds.
     pub const fn new(count: i64) -> Nanos {
         Nanos(count)

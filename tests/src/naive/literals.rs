@@ -1,31 +1,22 @@
-//! Values with a `#` as texts, from the rule (IEC 61131-3:2003, table 22; decision 65). The calendar is that of `g7-model`,
-//! whose own tests go through each day.
+//! Conversions between STRING and the types whose literals have a `#`, written from the rule (IEC 61131-3:2003, table 22;
+//! decision 65). The calendar, the units and the words are those of `g7-model`, which has tests of its own.
 
-use g7_model::{Moment, Nanos, Type};
+use g7_model::{Nanos, Type};
 
 use super::value::{NaiveFault, Run, Typed, Value};
 
-const UNITS: [(&str, i128); 7] = [
-    ("d", 86_400_000_000_000),
-    ("h", 3_600_000_000_000),
-    ("m", 60_000_000_000),
-    ("s", 1_000_000_000),
-    ("ms", 1_000_000),
-    ("us", 1_000),
-    ("ns", 1),
-];
-
-/// The text of a value of such a type.
+/// The text of a value; None if literals of the type have no `#`.
 pub(super) fn written(from: Type, v: &Value) -> Option<String> {
     match (from, v) {
         (Type::Moment(moment), Value::Time(t)) => {
-            let word = if moment == Moment::Date { "D" } else { moment.name() };
+            let [word, ..] = moment.words();
             Some(format!("{word}#{}", moment.text(Nanos::new(*t))))
         }
         (Type::Time, Value::Time(t)) => {
             let mut left = i128::from(*t).abs();
             let mut text = String::from(if *t < 0 { "T#-" } else { "T#" });
-            for (unit, nanos) in UNITS {
+            for (unit, size) in Nanos::UNITS {
+                let nanos = i128::from(size.count());
                 if left >= nanos {
                     text.push_str(&format!("{}{unit}", left / nanos));
                     left %= nanos;
@@ -41,27 +32,21 @@ pub(super) fn written(from: Type, v: &Value) -> Option<String> {
     }
 }
 
-/// The value of a text of such a type.
+/// The value of a text; None if literals of the type have no `#`.
 pub(super) fn read(text: &str, to: Type) -> Option<Run<Typed>> {
     match to {
-        Type::Moment(moment) => Some(behind(text, &words(moment)).and_then(|t| match moment.read(t) {
+        Type::Moment(moment) => Some(behind(text, moment.words()).and_then(|t| match moment.read(t) {
             Ok(t) => Ok(Typed::of(to, Value::Time(t.count()))),
             Err(why) if why.contains("1677-09-22") => Err(NaiveFault::Overflow),
             Err(_) => Err(NaiveFault::Index),
         })),
-        Type::Time => Some(behind(text, &["T", "TIME", "LT", "LTIME"]).and_then(duration)),
+        Type::Time => Some(behind(text, Nanos::WORDS).and_then(duration)),
         bits if bits.is_bits() => Some(whole(text, bits).ok_or(NaiveFault::Index)),
         _ => None,
     }
 }
 
-fn words(moment: Moment) -> Vec<&'static str> {
-    let all = ["D", "DATE", "LD", "LDATE", "TOD", "TIME_OF_DAY", "LTOD", "LTIME_OF_DAY"];
-    let all = all.into_iter().chain(["DT", "DATE_AND_TIME", "LDT", "LDATE_AND_TIME"]);
-    all.filter(|word| Moment::of_literal(word) == Some(moment)).collect()
-}
-
-fn behind<'t>(text: &'t str, words: &[&str]) -> Run<&'t str> {
+fn behind<'t>(text: &'t str, words: [&str; 4]) -> Run<&'t str> {
     match text.split_once('#') {
         None => Ok(text),
         Some((word, rest)) if words.iter().any(|w| *w == word || w.to_lowercase() == word) => Ok(rest),
@@ -77,7 +62,7 @@ fn duration(text: &str) -> Run<Typed> {
         let (number, behind) = rest.split_at(number);
         let letters = behind.find(|c: char| !c.is_ascii_lowercase()).unwrap_or(behind.len());
         let (unit, behind) = behind.split_at(letters);
-        let place = UNITS.iter().position(|(name, _)| *name == unit).ok_or(NaiveFault::Index)?;
+        let place = Nanos::UNITS.iter().position(|(name, _)| *name == unit).ok_or(NaiveFault::Index)?;
         if place < from {
             return Err(NaiveFault::Index);
         }
@@ -87,7 +72,7 @@ fn duration(text: &str) -> Run<Typed> {
             return Err(NaiveFault::Index);
         }
         let digits = |d: &str| d.parse::<i128>().map_err(|_| NaiveFault::Index);
-        let nanos = UNITS[place].1;
+        let nanos = i128::from(Nanos::UNITS[place].1.count());
         sum += digits(whole)? * nanos + digits(&format!("{fraction:0<9}"))? * nanos / 1_000_000_000;
     }
     if from == 0 {

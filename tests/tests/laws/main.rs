@@ -1,4 +1,4 @@
-//! The laws that hold for all charts, in one program: to link a program for each file takes longer than to compile them.
+//! The laws that hold for all charts. They are one program, because linking one for each file would take longer than compiling them.
 
 mod agree;
 mod asked;

@@ -1,53 +1,48 @@
 //! Conversions between STRING and the types whose values are written with a `#`: TIME, dates, times of day and bit strings
 //! (IEC 61131-3:2003, 2.5.1.5.1, table 22).
 //!
-//! Such a conversion is a function that is made at its first call, of the functions of texts that there are, so that no later
-//! stage knows of it (decision 65). A text is read in the form in which it is written, and with the other words that a literal
-//! can begin with; any other text is the fault `range`.
+//! The compiler makes a function for each conversion at its first call. The function calls the standard functions of texts, so
+//! that no later stage knows of these conversions (decision 65). A text is read in the form in which it is written; the word
+//! before the `#` can be any one of its type. Any other text is the fault `range`.
 
 use g7_engine::Builtin;
 use g7_model::{Moment, Nanos, Span, Type};
 
 use super::made::{binary, choice, compare, constant, unless};
+use super::moments::DAY;
 use super::resolver::Resolver;
 use super::standard::result_type;
 use super::types::{Typed, converted};
 use crate::ir::{BinaryOp, Expr, ExprKind, Value, VarId};
 
-/// The room of a text with a value, in bytes. The longest is a TIME of 34.
+/// The type of a text that holds one value. The longest value is a TIME of 34 bytes.
 const ROOM: Type = Type::String(64);
-const DAY: i128 = Nanos::DAY.count() as i128;
 const SECOND: i128 = Nanos::SECOND.count() as i128;
-/// Days from 0000-03-01 to 1970-01-01, and those of 400 years.
-const ERA: i128 = 719_468;
-const CYCLE: i128 = 146_097;
+const ERA: i128 = Moment::ERA as i128;
+const CYCLE: i128 = Moment::CYCLE as i128;
 const DIGITS: &str = "0123456789ABCDEF";
-/// The units of a TIME in their order, with their nanoseconds.
-const UNITS: [(&str, i128); 7] = [
-    ("d", DAY),
-    ("h", 3600 * SECOND),
-    ("m", 60 * SECOND),
-    ("s", SECOND),
-    ("ms", SECOND / 1_000),
-    ("us", SECOND / 1_000_000),
-    ("ns", 1),
-];
 
 /// The assignments of a function that is made.
 type List = Vec<(VarId, Expr)>;
 
 impl Resolver<'_, '_> {
-    /// The text of a value, where [`Type::String`] has no conversion of its own from the type.
+    /// The text of a date, a time of day or a bit string: its literal.
     pub(super) fn written_as_literal(&mut self, value: Expr, at: Span) -> Option<Typed> {
         let m = Make { at };
         let text = match value.ty {
-            Type::Moment(Moment::Date) => m.joined(vec![m.text("D#"), self.day_text(value, m)]),
-            Type::Moment(Moment::Tod) => m.joined(vec![m.text("TOD#"), self.clock_text(value, m)]),
-            Type::Moment(Moment::Dt) => {
-                let day = self.day(value.clone(), at)?.expr;
-                let time = self.time_of_day(value, at)?.expr;
-                let (day, time) = (self.day_text(day, m), self.clock_text(time, m));
-                m.joined(vec![m.text("DT#"), day, m.text("-"), time])
+            Type::Moment(moment) => {
+                let [word, ..] = moment.words();
+                let mut parts = vec![m.text(&format!("{word}#"))];
+                match moment {
+                    Moment::Date => parts.push(self.day_text(value, m)),
+                    Moment::Tod => parts.push(self.clock_text(value, m)),
+                    Moment::Dt => {
+                        let day = self.day(value.clone(), at)?.expr;
+                        let time = self.time_of_day(value, at)?.expr;
+                        parts.extend([self.day_text(day, m), m.text("-"), self.clock_text(time, m)]);
+                    }
+                }
+                m.joined(parts)
             }
             ty => {
                 let digits = ty.elementary().map_or(0, |row| u32::from(row.bits) / 4);
@@ -63,7 +58,7 @@ impl Resolver<'_, '_> {
         Some(Typed { expr: text, literal: false })
     }
 
-    /// The value of a text, of a type whose literals have a `#`.
+    /// The value of a text as a TIME, a date, a time of day or a bit string.
     pub(super) fn read_as_literal(&mut self, text: Expr, to: Type, at: Span) -> Option<Typed> {
         let m = Make { at };
         let moment = match to {
@@ -71,12 +66,7 @@ impl Resolver<'_, '_> {
             Type::Time => return Some(self.text_as_time(text, m)),
             _ => return Some(self.text_as_bits(text, to, m)),
         };
-        let words: &[&str] = match moment {
-            Moment::Date => &["D", "DATE", "LD", "LDATE"],
-            Moment::Tod => &["TOD", "TIME_OF_DAY", "LTOD", "LTIME_OF_DAY"],
-            Moment::Dt => &["DT", "DATE_AND_TIME", "LDT", "LDATE_AND_TIME"],
-        };
-        let plain = self.behind_word(text, words, m);
+        let plain = self.behind_word(text, moment.words(), m);
         let time = match moment {
             Moment::Date => self.text_day(plain, m),
             Moment::Tod => self.text_clock(plain, m),
@@ -172,10 +162,10 @@ impl Resolver<'_, '_> {
         m.called(f, converted(time, Type::Time), ROOM)
     }
 
-    /// The text behind the `#` of a literal, or the whole text where it has none. Signs and spaces that the conversions
-    /// of numbers would take are no part of a literal.
-    fn behind_word(&mut self, text: Expr, words: &[&str], m: Make) -> Expr {
-        let Some(first) = words.first() else { return text };
+    /// The part of a text behind the word and the `#` of a literal, or the whole text if there is no `#`. A text with a
+    /// space or a `+` is refused here: the conversions to numbers, which read the parts later, would accept both.
+    fn behind_word(&mut self, text: Expr, words: [&str; 4], m: Make) -> Expr {
+        let [first, ..] = words;
         let name = format!("@behind_{first}");
         let f = self.made(&name, (ROOM, ROOM), m.at, |r, input, result| {
             let place = r.local(&format!("{name}.place"), Type::Lint, m.at);
@@ -273,7 +263,7 @@ impl Resolver<'_, '_> {
 
     /// STRING_TO_TIME: `T#1h20m`, `T#-1.5s`; each unit once, in their order.
     fn text_as_time(&mut self, text: Expr, m: Make) -> Typed {
-        let plain = self.behind_word(text, &["T", "TIME", "LT", "LTIME"], m);
+        let plain = self.behind_word(text, Nanos::WORDS, m);
         let f = self.made("@STRING_TO_TIME", (ROOM, Type::Time), m.at, |r, input, result| {
             let mut local = |name: &str, ty| r.local(&format!("@STRING_TO_TIME.{name}"), ty, m.at);
             let (rest, given) = (local("rest", ROOM), local("given", ROOM));
@@ -291,7 +281,7 @@ impl Resolver<'_, '_> {
                 (sum, m.long(0)),
                 (units, m.long(0)),
             ];
-            for (unit, nanos) in UNITS {
+            for (unit, nanos) in Nanos::UNITS.map(|(unit, size)| (unit, i128::from(size.count()))) {
                 list.push((place, m.unit_in(t(), unit)));
                 let found = || compare(BinaryOp::Gt, v(place), 0, m.at);
                 let number = m.left(t(), m.least(m.sub(v(place), m.long(1)), 0));
@@ -364,7 +354,7 @@ impl Resolver<'_, '_> {
     }
 }
 
-/// Makes expressions at one place.
+/// Builds expressions that all have the same place in the text.
 #[derive(Clone, Copy)]
 struct Make {
     at: Span,

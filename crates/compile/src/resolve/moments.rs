@@ -11,7 +11,7 @@ use super::resolver::Resolver;
 use super::types::{Typed, converted};
 use crate::ir::{BinaryOp, Expr, ExprKind, Value, VarId};
 
-const DAY: i128 = Nanos::DAY.count() as i128;
+pub(super) const DAY: i128 = Nanos::DAY.count() as i128;
 
 /// 1970-01-01 was a Thursday, the fifth day of a week that begins with Sunday.
 const FIRST: i128 = 4;

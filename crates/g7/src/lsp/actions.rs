@@ -74,27 +74,25 @@ fn renamed(
         return in_one(uri, file, byte, (&name, to));
     };
     let heads: Vec<&Source> = project.sources.iter().filter(|head| across::has(head, &declared)).collect();
-    let alone = matches!(heads.as_slice(), [] | [_]);
-    if alone && heads.iter().all(|head| head.files().count() == 1) {
+    // Where only this file is concerned, its text may have errors elsewhere.
+    if heads.len() < 2 && heads.iter().all(|head| head.files().count() == 1) {
         return in_one(uri, file, byte, (&name, to));
     }
-    let changes = across::rename(&heads, (&declared, &at), to)?;
+    let renamed = across::rename(&heads, (&declared, &at), to)?;
     let mut all = Vec::new();
-    for (path, splices) in &changes {
+    for (path, splices) in &renamed.changes {
         let source = heads.iter().find_map(|head| across::file(head, path));
         let (Some(source), Some(uri)) = (source, project.address(path)) else { continue };
         all.push((uri, places::edits_of(&Positions::new(&source.text), &source.text, splices)));
     }
-    for head in &heads {
-        let (Some(uri), Some(after)) = (project.address(&head.name), across::changed(head, &changes)) else {
-            continue;
-        };
-        all.extend(beside::renamed(&uri, head, &after, &name)?);
+    for (head, after) in &renamed.heads {
+        let Some(uri) = project.address(&head.name) else { continue };
+        all.extend(beside::renamed(&uri, head, after, &name)?);
     }
     Ok(all)
 }
 
-/// The change of a name that no other file knows. The text may have errors elsewhere.
+/// The change of a name that no other file knows.
 fn in_one(
     uri: &Uri,
     file: &File,

@@ -16,7 +16,8 @@ use lsp_types::Uri;
 use super::open::Open;
 use super::places;
 use crate::failure::raw;
-use crate::{files, used};
+use crate::files::{self, Met};
+use crate::used;
 
 /// Most entries of folders that are looked at.
 const MOST: usize = 20_000;
@@ -54,27 +55,25 @@ impl Heads<'_> {
 
     /// A file with what it uses; `None` if it cannot be read, or if it uses nothing and is not the one that is asked for.
     fn head(&self, path: &Path, always: bool) -> Option<Source> {
-        let bytes = self.text(path)?;
+        let folder = path.parent()?;
+        let text = self.text(folder, path.file_name()?.to_str()?)?;
         // Most files of a large folder use nothing and need not be parsed.
-        let uses = bytes.windows(4).any(|word| word == b"use ");
-        if !uses && !always {
+        if !always && !text.contains("use ") {
             return None;
         }
-        let mut source = Source::native(&name(path), bytes, 0);
-        let folder = path.parent()?;
+        let mut source = Source::native(&name(path), text.into_bytes(), 0);
         source.link(&mut |used| {
-            let text = real(&used::plain(&folder.join(used))).and_then(|path| self.text(&path));
+            let text = self.text(folder, used).map(String::into_bytes);
             text.ok_or_else(|| say!("there is no such file"))
         });
         Some(source)
     }
 
-    /// The bytes of a file, as the editor has it, else as the disk has it if a chart may read it.
-    fn text(&self, path: &Path) -> Option<Vec<u8>> {
-        match self.open.get(path) {
-            Some((_, file)) => Some(file.text().as_bytes().to_vec()),
-            None => used::within(&used::root(path.parent()?).ok()?, path).ok(),
-        }
+    /// The text of a file by its path from a folder: as the editor has it, else as the disk has it if a chart of the folder
+    /// may read it.
+    fn text(&self, folder: &Path, name: &str) -> Option<String> {
+        let open = real(&used::plain(&folder.join(name))).and_then(|path| self.open.get(&path));
+        open.map(|(_, file)| file.text().to_owned()).or_else(|| super::used::on_disk(folder, name))
     }
 }
 
@@ -101,14 +100,11 @@ fn charts(root: &Path, found: &mut BTreeSet<PathBuf>) -> Result<(), Said> {
                 ));
             };
             left = rest;
-            let hidden = entry.file_name().to_string_lossy().starts_with('.');
-            // A link to a folder is not followed, because it may lead back here.
-            match entry.file_type() {
-                Ok(kind) if kind.is_dir() && !hidden => folders.push(entry.path()),
-                Ok(kind) if !kind.is_dir() && files::is_chart(&entry.path()) => {
-                    _ = found.insert(entry.path())
-                }
-                _ => {}
+            let path = entry.path();
+            match files::met(&path) {
+                Met::Folder => folders.push(path),
+                Met::Chart => _ = found.insert(path),
+                Met::Other => {}
             }
         }
     }

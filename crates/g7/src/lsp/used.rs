@@ -60,8 +60,8 @@ fn folder(uri: &Uri) -> Option<PathBuf> {
     Some(places::path(uri)?.parent()?.to_path_buf())
 }
 
-/// The text of a file on the disk, if it may be read.
-fn on_disk(folder: &Path, name: &str) -> Option<String> {
+/// The text of a file on the disk by its path from a folder, if a chart of the folder may read it.
+pub(super) fn on_disk(folder: &Path, name: &str) -> Option<String> {
     let folder = folder.canonicalize().ok()?;
     let bytes = used::within(&used::root(&folder).ok()?, &folder.join(name)).ok()?;
     String::from_utf8(bytes).ok()

@@ -44,7 +44,9 @@ pub(crate) fn test(args: &Test) -> Result<Verdict, Failure> {
         results.covered.push((done.name, done.coverage));
         Ok(())
     })?;
-    results.covered = Coverage::by_file(&results.covered);
+    if args.coverage {
+        results.covered = Coverage::by_file(&results.covered);
+    }
     if let Some(path) = &args.junit {
         files::write(path, output::junit(&results).as_bytes())?;
     }

@@ -1,9 +1,8 @@
-//! The tests of the command line, in one program: to link a program for each file takes longer than to compile them.
+//! The tests of the command line. They are one program, because linking one for each file would take longer than compiling them.
 
 mod cases;
 mod check;
 mod code;
-#[path = "../common/mod.rs"]
 mod common;
 mod draw;
 mod events;

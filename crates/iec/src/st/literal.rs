@@ -1,7 +1,7 @@
 //! Reads constants in the text: type words in any case, and forms without a counterpart.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Moment, Name, Path, Said, say};
+use g7_model::{Expr, ExprKind, Literal, Moment, Name, Nanos, Path, Said, say};
 
 use super::lex::{Kind, Token};
 use super::parse::Parser;
@@ -28,7 +28,7 @@ impl Parser<'_> {
         let (prefix, value) = text.split_once('#').unwrap_or((text, ""));
         let upper = prefix.to_ascii_uppercase();
         match upper.as_str() {
-            "T" | "TIME" | "LTIME" | "LT" => {
+            word if Nanos::WORDS.contains(&word) => {
                 let time = constant::duration(value).map(Literal::Time);
                 self.read(token, time, text)
             }

@@ -1,6 +1,5 @@
-//! The tests of the page, in one program: to link a program for each file takes longer than to compile them.
+//! The tests of the page. They are one program, because linking one for each file would take longer than compiling them.
 
-#[path = "../common/mod.rs"]
 mod common;
 mod explained;
 mod files;

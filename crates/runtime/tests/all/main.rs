@@ -1,4 +1,4 @@
-//! The tests of the runtime, in one program: to link a program for each file takes longer than to compile them.
+//! The tests of the runtime. They are one program, because linking one for each file would take longer than compiling them.
 
 mod c;
 mod helpers;

@@ -1,4 +1,4 @@
-//! The tests of the text, in one program: to link a program for each file takes longer than to compile them.
+//! The tests of the text. They are one program, because linking one for each file would take longer than compiling them.
 
 mod documents;
 mod grammar;

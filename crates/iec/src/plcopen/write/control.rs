@@ -24,7 +24,7 @@ use g7_model::{
 };
 
 use super::clocks::{Clocks, outputs_apart};
-use super::never::{never, seconds};
+use super::never::{conversions, never};
 use crate::nodes::{self, Taken};
 
 /// Moves the actions that matiec treats otherwise than the standard into one body of each chart.
@@ -32,7 +32,7 @@ pub(super) fn control(mut document: Document, problems: &mut Vec<Problem>) -> Do
     let mut taken = names(&document);
     let written = written(&document);
     let (variables, given) = (variables(&document, |_| true), variables(&document, |v| v.init.is_some()));
-    seconds(&mut document, problems);
+    conversions(&mut document, problems);
     let mut clocks = Clocks::default();
     for item in &mut document.items {
         match item {

@@ -1,4 +1,4 @@
-//! Steps that can never be active, and conversions of times, where Beremiz or OpenPLC make text for matiec.
+//! Steps that can never be active, and conversions with another value, where Beremiz or OpenPLC make text for matiec.
 //!
 //! `control.rs` begins with both. The generators write what they find behind the initial steps. A step that no chain
 //! of transitions reaches is missing in their text, though a transition names it. So it is left out here, with the
@@ -8,7 +8,8 @@ use std::collections::HashSet;
 
 use g7_model::visit_mut::{self, Visitor};
 use g7_model::{
-    Chart, ChartItem, Document, Expr, ExprKind, Item, Nanos, Problem, Said, Transition, Type, codes, say,
+    Chart, ChartItem, Document, Expr, ExprKind, Item, Moment, Nanos, Problem, Said, Transition, Type, codes,
+    say,
 };
 
 use crate::nodes;
@@ -71,31 +72,30 @@ impl Visitor for Gone {
     }
 }
 
-/// Tells of conversions between times and numbers, which count milliseconds here and seconds in matiec, and of those to
-/// and from STRING, whose texts matiec writes otherwise unless they are of whole numbers and BOOL.
-pub(super) fn seconds(document: &mut Document, problems: &mut Vec<Problem>) {
+/// Tells of conversions that give another value in matiec: those between times and numbers count seconds there and
+/// milliseconds here, and the texts of REAL, times, dates and bit strings have another form.
+pub(super) fn conversions(document: &mut Document, problems: &mut Vec<Problem>) {
     struct Conversions<'p>(&'p mut Vec<Problem>);
     impl Visitor for Conversions<'_> {
         fn expr(&mut self, e: &mut Expr) {
             let ExprKind::Call(path, _) = &e.kind else { return };
             let name = path.text().to_ascii_uppercase();
-            let from = ["TIME_TO_", "TOD_TO_", "TIME_OF_DAY_TO_"].iter().any(|word| name.starts_with(word));
-            let to = ["_TO_TIME", "_TO_TOD", "_TO_TIME_OF_DAY"].iter().any(|word| name.ends_with(word));
-            if (from || to) && !["STRING", "DT_TO", "DATE_AND"].iter().any(|word| name.contains(word)) {
-                let what = say!(
-                    "{} counts in seconds there, and in milliseconds here",
-                    Said::foreign(name.as_str())
-                );
-                self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
-            }
-            let other = match name.split_once("_TO_") {
-                Some((other, "STRING")) | Some(("STRING", other)) => Type::named(other),
-                _ => None,
+            let Some((from, to)) = name.split_once("_TO_") else { return };
+            let (Some(from), Some(to)) = (Type::named(from), Type::named(to)) else { return };
+            let what = match (from, to) {
+                (Type::String(_), other) | (other, Type::String(_)) => {
+                    if other.is_integer() || other == Type::Bool {
+                        return;
+                    }
+                    say!("the texts of {} have another form there", Said::foreign(name.as_str()))
+                }
+                (Type::Moment(Moment::Dt), _) => return,
+                (Type::Time | Type::Moment(Moment::Tod), _) | (_, Type::Time | Type::Moment(Moment::Tod)) => {
+                    say!("{} counts in seconds there, and in milliseconds here", Said::foreign(name.as_str()))
+                }
+                _ => return,
             };
-            if other.is_some_and(|ty| !ty.is_integer() && ty != Type::Bool) {
-                let what = say!("the texts of {} have another form there", Said::foreign(name));
-                self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
-            }
+            self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
         }
     }
     visit_mut::document(document, &mut Conversions(problems));

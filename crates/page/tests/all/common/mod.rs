@@ -1,6 +1,5 @@
 //! A page that tests can send messages to.
 #![allow(clippy::disallowed_methods, reason = "the examples are read")]
-#![allow(dead_code, reason = "each test file uses some of it")]
 
 use g7_page::Page;
 use serde_json::{Value, json};

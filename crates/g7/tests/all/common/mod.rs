@@ -1,5 +1,4 @@
 //! A folder for each test, and the program under test.
-#![allow(dead_code, reason = "each test file uses a part")]
 #![allow(clippy::disallowed_methods, reason = "tests look at what was written")]
 
 pub(crate) mod broker;

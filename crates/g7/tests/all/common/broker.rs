@@ -143,11 +143,6 @@ impl Watch {
             self.next();
         }
     }
-
-    /// True if a message of the topic has come.
-    pub(crate) fn has_seen(&self, topic: &str) -> bool {
-        self.last.contains_key(topic)
-    }
 }
 
 impl Drop for Broker {

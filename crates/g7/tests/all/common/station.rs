@@ -1,5 +1,4 @@
 //! `g7 serve --online` and the pages that watch it.
-#![allow(dead_code, reason = "each test uses some of it")]
 
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
