@@ -95,8 +95,8 @@ impl Renaming {
         Ok(tidied(text, splices))
     }
 
-    /// Refuses unless each name of a document refers to the same part after the change as before. `splices` gives the
-    /// changes of the text of a file.
+    /// Refuses unless each name of a document refers to the same part after the change as before. `splices(file)` are the
+    /// changes of the text of that file.
     ///
     /// # Errors
     ///

@@ -114,7 +114,7 @@ fn paces(source: &Source, report: &mut Report) -> Paces {
 struct Turns {
     /// The first turn of each program, by its name in upper case.
     of: HashMap<String, usize>,
-    /// The turn of the last program that is a chart.
+    /// The turn of the chart that runs last.
     last_chart: Option<usize>,
 }
 

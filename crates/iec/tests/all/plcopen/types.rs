@@ -206,7 +206,7 @@ fn what_a_type_cannot_be_is_told() {
         // A dimension without bounds, a subrange without limits.
         ("", "<array><dimension lower='1'/><baseType><INT/></baseType></array>", "G0604"),
         ("", "<subrangeSigned><baseType><INT/></baseType></subrangeSigned>", "G0604"),
-        // Values of another type than INT.
+        // The values are of a type other than INT.
         (
             "<dataType name='A'><baseType><enum><values><value name='x'/></values><baseType><UDINT/></baseType></enum></baseType></dataType>",
             "<derived name='A'/>",
