@@ -4,10 +4,10 @@
 
 use g7_iec::plcopen::Dialect;
 use g7_iec::{Written, plcopen, sfc, xml};
-use g7_model::composed::decomposed;
+use g7_model::composed::{as_block, as_document, decomposed, with_blocks};
 use g7_model::instances::instantiated;
 use g7_model::named::{declared, held};
-use g7_model::{Document, FileId, Problem};
+use g7_model::{Document, FileId, Item, Problem};
 
 use crate::{arrays, classicladder, controlexpert, jgrafchart, l5x, mermaid, s7graph, xmi};
 
@@ -22,6 +22,15 @@ type Read = fn(bytes: &[u8], file: FileId) -> (Document, Vec<Problem>);
 /// Writes a document that was read without errors.
 type Write = fn(&Document) -> Written;
 
+/// The types of the file that a writer takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Keeps {
+    /// None of them.
+    None,
+    /// Arrays and function blocks; if `initial`, instances of these with initial values as well.
+    Blocks { initial: bool },
+}
+
 /// A format of another tool.
 #[derive(Debug)]
 pub struct Format {
@@ -34,8 +43,8 @@ pub struct Format {
     reader: Option<Read>,
     writer: Option<Write>,
     in_dialect: Option<fn(&Document, Dialect) -> Written>,
-    /// True if its writer takes arrays.
-    arrays: bool,
+    /// The types of the file that its writer takes.
+    keeps: Keeps,
 }
 
 /// How a file of each format that is read is recognised, by the word of the format, in the order in which a file
@@ -62,7 +71,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(jgrafchart::import),
         writer: Some(jgrafchart::export),
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
     // PLCopen TC6 XML and IEC 61131-10 XML; TC6 XML 2.01 is written.
     Format {
@@ -72,7 +81,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(plcopen::import),
         writer: Some(plcopen::export),
         in_dialect: Some(plcopen::export_for),
-        arrays: true,
+        keeps: Keeps::Blocks { initial: Dialect::USUAL.has_initial() },
     },
     // EMF/XMI instances of the AGRAFE meta-model of IEC 60848.
     Format {
@@ -82,7 +91,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(xmi::import),
         writer: Some(xmi::export),
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
     // ClassicLadder 0.7 to 0.9: a project, or its `sequential.csv` alone.
     Format {
@@ -92,7 +101,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(classicladder::import),
         writer: None,
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
     // Control Expert and Unity Pro: a chart (`.XSF`), or an application with charts (`.XEF`); `.XSF` is written.
     Format {
@@ -102,7 +111,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(controlexpert::import),
         writer: Some(controlexpert::export),
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
     // S7-GRAPH: a block exported by TIA Portal's Openness.
     Format {
@@ -112,7 +121,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(s7graph::import),
         writer: None,
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
     // Studio 5000 Logix Designer: routines in SFC.
     Format {
@@ -122,7 +131,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(l5x::import),
         writer: None,
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
     // IEC 61131-3 in text.
     Format {
@@ -132,7 +141,7 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(sfc::import),
         writer: Some(sfc::export),
         in_dialect: None,
-        arrays: true,
+        keeps: Keeps::Blocks { initial: true },
     },
     // A flowchart in the text of Mermaid, for documents.
     Format {
@@ -142,7 +151,7 @@ pub static FORMATS: [Format; 9] = [
         reader: None,
         writer: Some(mermaid::export),
         in_dialect: None,
-        arrays: false,
+        keeps: Keeps::None,
     },
 ];
 
@@ -173,27 +182,49 @@ impl Format {
     /// Writes a document, which must have been read without errors; None if the format is not
     /// written.
     pub fn write(&self, document: &Document) -> Option<Written> {
-        self.writer.map(|write| self.with_plain(document, write))
+        self.writer.map(|write| with_plain(document, self.keeps, write))
     }
 
     /// Writes a document in a dialect; None if the format has no dialects.
     pub fn write_in(&self, document: &Document, dialect: Dialect) -> Option<Written> {
-        self.in_dialect.map(|write| self.with_plain(document, |plain| write(plain, dialect)))
+        let keeps = Keeps::Blocks { initial: dialect.has_initial() };
+        self.in_dialect.map(|write| with_plain(document, keeps, |plain| write(plain, dialect)))
     }
+}
 
-    /// Gives a document to a writer as charts and variables: without parameters and types of its own, and without
-    /// arrays if the format has none.
-    fn with_plain(&self, document: &Document, write: impl FnOnce(&Document) -> Written) -> Written {
-        let typed = declared(document).0;
-        let charts = instantiated(&typed).0;
-        let plain = decomposed(&charts).0;
-        let held = held(&plain).0;
-        let (plain, mut problems) = arrays::singled(&held, self.arrays);
-        let mut written = write(&plain);
-        written.problems.append(&mut problems);
-        written.problems.sort_by_key(|p| (p.at.start, p.at.end));
-        written
+/// Gives a document to a writer as charts and variables: without parameters and structures, and without the arrays and
+/// function blocks that its format does not have.
+fn with_plain(document: &Document, keeps: Keeps, write: impl FnOnce(&Document) -> Written) -> Written {
+    let typed = declared(document).0;
+    let charts = instantiated(&typed).0;
+    let plain = match keeps {
+        Keeps::None => decomposed(&charts).0,
+        Keeps::Blocks { initial } => with_blocks(&charts, initial),
+    };
+    let (plain, mut problems) = singled(&plain, keeps);
+    let mut written = write(&plain);
+    written.problems.append(&mut problems);
+    written.problems.sort_by_key(|p| (p.at.start, p.at.end));
+    written
+}
+
+/// The document with numbers in the place of values of enumerations, and without arrays that the format does not have;
+/// its function blocks likewise.
+fn singled(document: &Document, keeps: Keeps) -> (Document, Vec<Problem>) {
+    let held = held(document).0;
+    let (plain, mut problems) = arrays::singled(&held, keeps != Keeps::None);
+    let mut plain = plain.into_owned();
+    for item in &mut plain.items {
+        let Item::Composed(block) = item else { continue };
+        let mut unit = as_document(block);
+        unit.items.extend(document.items.iter().filter(|i| matches!(i, Item::Type(_))).cloned());
+        let (unit, mut own) = singled(&unit, keeps);
+        problems.append(&mut own);
+        let inouts: Vec<Box<str>> =
+            block.inouts.iter().flat_map(|i| &i.names).map(|n| n.text.clone()).collect();
+        *block = as_block(block, unit, |n| inouts.iter().any(|i| **i == *n));
     }
+    (plain, problems)
 }
 
 /// The format with this word.

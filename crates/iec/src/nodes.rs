@@ -32,6 +32,7 @@ impl Taken {
             match item {
                 Item::Var(v) => v.names.iter().for_each(&mut take),
                 Item::Function(f) => take(&f.name),
+                Item::Composed(c) => take(&c.name),
                 Item::Chart(c) => {
                     take(&c.name);
                     for item in &c.items {

@@ -17,6 +17,9 @@ pub enum Ref<'d> {
     Var(VarKey<'d>),
     /// A member of a function block.
     Member(VarKey<'d>, &'static str),
+    /// A member of an instance of a function block of the file, see [`g7_model::composed::with_blocks`]; so many names of
+    /// the path stand behind the instance.
+    Inner(VarKey<'d>, usize),
     /// A bit of a bit string or a whole number.
     Bit(VarKey<'d>, u8),
     /// The activity of a step.
@@ -178,8 +181,7 @@ impl<'d> Scopes<'d> {
         }
         let own = chart.and_then(|c| self.entity(Some(c), &first.text));
         if let Some(Ref::Var(key)) = own.or_else(|| self.entity(None, &first.text))
-            && let [part] = rest
-            && let Some(part) = self.part(key, &part.text)
+            && let Some(part) = self.behind(key, rest)
         {
             return Some(part);
         }
@@ -196,6 +198,17 @@ impl<'d> Scopes<'d> {
         }
         let section = table.sections.get(name).map(|s| Ref::Section(chart, s));
         section.or_else(|| table.actions.get(name).map(|a| Ref::Action(chart, a)))
+    }
+
+    /// The meaning of the names behind a variable.
+    fn behind(&self, key: VarKey<'d>, rest: &[Name]) -> Option<Ref<'d>> {
+        if self.decl(key)?.is_own_instance() {
+            return Some(Ref::Inner(key, rest.len()));
+        }
+        match rest {
+            [part] => self.part(key, &part.text),
+            _ => None,
+        }
     }
 
     /// A member of an instance, or a bit of a number.
@@ -221,8 +234,8 @@ impl<'d> Scopes<'d> {
         let entity = self.entity(Some(chart), &first.text);
         match (entity, rest) {
             (Some(found), []) => return Some(found),
-            (Some(Ref::Var(key)), [part]) => {
-                if let Some(part) = self.part(key, &part.text) {
+            (Some(Ref::Var(key)), behind) => {
+                if let Some(part) = self.behind(key, behind) {
                     return Some(part);
                 }
             }

@@ -3,10 +3,9 @@
 //! `write` asks here what a project has to look like; the reader takes all dialects at once.
 
 /// The tool for which a project is written.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
     /// Beremiz.
-    #[default]
     Beremiz,
     /// OpenPLC, whose editor and `xml2st` have the generator of Beremiz.
     OpenPlc,
@@ -28,6 +27,15 @@ impl Dialect {
             Dialect::Codesys => "codesys",
             Dialect::Standard => "standard",
         }
+    }
+
+    /// The dialect of a file for which none is named.
+    pub const USUAL: Dialect = Dialect::Beremiz;
+
+    /// True if the tool gives an instance of a function block of the file its initial values: the generator of Beremiz
+    /// leaves them out of its text.
+    pub const fn has_initial(self) -> bool {
+        matches!(self, Dialect::Codesys | Dialect::Standard)
     }
 
     /// True if the tool generates text for matiec from the drawing, as Beremiz does.

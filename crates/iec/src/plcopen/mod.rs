@@ -66,7 +66,7 @@ pub use dialect::Dialect;
 
 /// Writes a document as a project, in the dialect that most tools read.
 pub fn export(document: &Document) -> crate::Written {
-    write::export(document, Dialect::default())
+    write::export(document, Dialect::USUAL)
 }
 
 /// Writes a document as a project for one tool.

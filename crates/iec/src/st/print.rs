@@ -4,14 +4,13 @@
 //! `step.X` and `step.T`. The standard has no implicit conversions; where the .g7 language widens a
 //! number, a conversion is written.
 
-use std::collections::HashMap;
-
 use g7_model::{
-    Arg, BinaryOp, Chart, Document, Expr, ExprKind, FbKind, Holds, Item, Literal, Name, Operands, Path,
-    StandardFunction, Stmt, StmtKind, Type, UnaryOp, VarDecl,
+    Arg, BinaryOp, Expr, ExprKind, Holds, Literal, Name, Operands, Path, StandardFunction, Stmt, StmtKind,
+    Type, UnaryOp,
 };
 
 use super::bits::{self, Bit};
+use super::known::Types;
 
 /// The type of an expression, as far as it is known.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -29,39 +28,6 @@ pub(crate) struct Text {
     pub(crate) ty: Ty,
     /// The binding strength of its outermost operator; 9 for an operand.
     strength: u8,
-}
-
-/// The types of names.
-#[derive(Debug, Default)]
-pub struct Types<'d> {
-    names: HashMap<&'d str, Type>,
-    functions: HashMap<&'d str, Type>,
-}
-
-impl<'d> Types<'d> {
-    /// The types of the names of the file and, if given, of a chart.
-    pub fn new(document: &'d Document, chart: Option<&'d Chart>) -> Types<'d> {
-        let mut types = Types::default();
-        for item in &document.items {
-            match item {
-                Item::Var(v) => types.declare(v),
-                Item::Function(f) => _ = types.functions.insert(&f.name.text, f.result),
-                _ => {}
-            }
-        }
-        chart.into_iter().flat_map(Chart::vars).for_each(|v| types.declare(v));
-        types
-    }
-
-    fn declare(&mut self, decl: &'d VarDecl) {
-        self.names.extend(decl.names.iter().map(|n| (&*n.text, decl.ty)));
-    }
-
-    /// Adds a name of a function, which hides all others.
-    pub fn own(mut self, name: &'d str, ty: Type) -> Types<'d> {
-        self.names.insert(name, ty);
-        self
-    }
 }
 
 /// Prints the texts of one place.
@@ -235,8 +201,9 @@ impl Writer<'_> {
 
     /// The bit of a variable that a path names.
     fn bit(&self, path: &Path) -> Option<Bit> {
-        let [name, number] = path.names.as_slice() else { return None };
-        Bit::of(&name.text, *self.types.names.get(&*name.text)?, &number.text)
+        let (number, variable) = path.names.split_last()?;
+        let name = variable.iter().map(|n| &*n.text).collect::<Vec<_>>().join(".");
+        Bit::of(&name, self.types.of(variable)?, &number.text)
     }
 
     /// The bit of an element of an array.
@@ -260,16 +227,7 @@ impl Writer<'_> {
         if let Some(bit) = self.bit(path) {
             return read(&bit);
         }
-        let ty = match path.names.as_slice() {
-            [one] => self.types.names.get(&*one.text).copied(),
-            [first, second] => match self.types.names.get(&*first.text) {
-                Some(Type::Fb(kind)) => member(*kind, &second.text).map(|m| m.1),
-                Some(_) => None,
-                None if second.text.eq_ignore_ascii_case("X") => Some(Type::Bool),
-                None => Some(Type::Time),
-            },
-            _ => None,
-        };
+        let ty = self.types.of(&path.names);
         Text::operand(path.text(), ty.map_or(Ty::Unknown, Ty::Known))
     }
 
@@ -278,7 +236,7 @@ impl Writer<'_> {
             return shift;
         }
         let name = path.text();
-        let own = self.types.functions.get(&*name).copied();
+        let own = self.types.of_function(&name);
         let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
         let common = texts.iter().fold(Ty::Whole, |all, t| match (all, t.ty) {
             (Ty::Known(a), Ty::Known(b)) if counts(a) && counts(b) && a.is_bits() == b.is_bits() => {
@@ -316,7 +274,7 @@ impl Writer<'_> {
             standard,
             StandardFunction::Shl | StandardFunction::Shr | StandardFunction::Rol | StandardFunction::Ror
         );
-        if !shifts || self.types.functions.contains_key(&*path.text()) {
+        if !shifts || self.types.of_function(&path.text()).is_some() {
             return None;
         }
         let place = |a: &Arg, k: usize| a.name.as_ref().map_or(Some(k), |n| standard.row().place(&n.text));
@@ -440,18 +398,10 @@ impl Writer<'_> {
 
     /// A call of a function block.
     fn block_call(&self, path: &Path, args: &[Arg]) -> String {
-        let kind = match path.names.as_slice() {
-            [one] => self.types.names.get(&*one.text).copied(),
-            _ => None,
-        };
         let mut parts = Vec::new();
         for arg in args {
             let name = arg.name.as_ref().map_or("", |n: &Name| &n.text);
-            let ty = match kind {
-                Some(Type::Fb(kind)) => member(kind, name).map(|m| m.1),
-                _ => None,
-            };
-            let value = match ty {
+            let value = match self.types.of_member(path, name) {
                 Some(ty) if !arg.output => self.value(&arg.value, ty),
                 _ => self.text(&arg.value).text,
             };
@@ -498,11 +448,6 @@ fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
         (Ty::Known(t), _) | (_, Ty::Known(t)) => (left, right, Ty::Known(t)),
         (a, _) => (left, right, a),
     }
-}
-
-/// The member of a function block with this name, in any case.
-fn member(kind: FbKind, name: &str) -> Option<(&'static str, Type)> {
-    kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| (m.0, m.1))
 }
 
 /// The type of the result of a standard function.

@@ -16,6 +16,7 @@ pub(super) fn named(document: &mut Document, names: &mut Names) {
     let mut known: HashMap<String, Name> = HashMap::new();
     let variables = document.items.iter_mut().flat_map(|item| match item {
         Item::Var(v) => vec![v],
+        Item::Composed(c) => c.members.iter_mut().chain(&mut c.inouts).collect(),
         Item::Chart(c) => c
             .items
             .iter_mut()
@@ -36,7 +37,11 @@ pub(super) fn named(document: &mut Document, names: &mut Names) {
         });
         decl.of = Some(Box::new(name.clone()));
     }
-    let first = document.items.iter().position(|i| matches!(i, Item::Var(_) | Item::Chart(_))).unwrap_or(0);
+    let first = document
+        .items
+        .iter()
+        .position(|i| matches!(i, Item::Composed(_) | Item::Var(_) | Item::Chart(_)))
+        .unwrap_or(0);
     document.items.splice(first..first, made);
 }
 

@@ -27,7 +27,8 @@ impl<'d> Lower<'d> {
                 Item::Profile(p) => at = p.at.0,
                 Item::Cycle(..) => items.push(item.clone()),
                 Item::Var(v) => items.extend(self.variable_of(None, v, false).map(Item::Var)),
-                Item::Composed(_) | Item::Type(_) => {} // Plain variables and numbers stand in their place already.
+                // Numbers stand in the place of values, and `blocks` makes the function blocks that stay.
+                Item::Composed(_) | Item::Type(_) => {}
                 Item::Function(f) => functions.push(Item::Function(self.function(f))),
                 Item::Pre(body, at) => self.processing(None, body, at.0, &mut pre),
                 Item::Post(body, at) => self.processing(None, body, at.0, &mut post),
@@ -125,6 +126,7 @@ impl<'d> Lower<'d> {
             return None;
         }
         made.init = decl.init.as_ref().map(|e| self.initial_value(e, chart));
+        self.blocks.instance(&mut made);
         for (low, high) in made.array.iter_mut().flat_map(|a| &mut a.dimensions) {
             (*low, *high) = (self.constant(low, chart), self.constant(high, chart));
         }
@@ -180,7 +182,9 @@ impl<'d> Lower<'d> {
             self.differs(span, say!("a body of a chart with a period of its own; it runs in every scan"));
         }
         let at = At { chart, ..At::default() };
-        let list = self.block(body.block(), &at, "Body");
+        // Where no chart is, no other body has local variables, so these keep their names.
+        let owner = if self.scopes.charts.is_empty() { "" } else { "Body" };
+        let list = self.block(body.block(), &at, owner);
         if !into.is_empty() && into.iter().any(Stmt::returns) {
             self.lost(span, say!("RETURN in one of several bodies: those behind it would not run"));
         }

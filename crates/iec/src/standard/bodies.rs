@@ -3,7 +3,7 @@
 use g7_model::codes;
 use g7_model::{
     Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, Literal, Name, Path, Said, Span, Stmt, StmtKind, Type,
-    UnaryOp, VarKind, say,
+    UnaryOp, VarDecl, VarKind, say,
 };
 
 use super::lower::Lower;
@@ -81,7 +81,7 @@ impl<'d> Lower<'d> {
         }
     }
 
-    fn args(&mut self, args: &[Arg], at: &At<'d>) -> Vec<Arg> {
+    pub(super) fn args(&mut self, args: &[Arg], at: &At<'d>) -> Vec<Arg> {
         let arg = |a: &Arg| (a.name.clone(), a.output, a.value.clone());
         let args: Vec<_> = args.iter().map(arg).collect();
         args.into_iter()
@@ -116,6 +116,7 @@ impl<'d> Lower<'d> {
                 names.push(member.to_string());
                 named(&names, span)
             }
+            Some(Ref::Inner(key, rest)) if !at.function => self.inner(key, path, rest, span, at),
             Some(Ref::Bit(key, bit)) if !at.function => self.bit(key, bit, path, span, at),
             Some(Ref::Active(step)) if !at.function => self.active(step, span, at, 0),
             Some(Ref::Time(step)) if !at.function && self.scan_clock => self.counted(step, false, span, at),
@@ -144,7 +145,7 @@ impl<'d> Lower<'d> {
     }
 
     /// Notes what an assignment or an output of a call writes.
-    fn writes(&mut self, target: &Expr, at: &At<'d>) {
+    pub(super) fn writes(&mut self, target: &Expr, at: &At<'d>) {
         match &target.kind {
             ExprKind::Path(path) => self.note(path, true, at),
             ExprKind::Element(path, ..) => self.note(path, true, at),
@@ -186,7 +187,7 @@ impl<'d> Lower<'d> {
     pub(super) fn var_names(&mut self, key: VarKey<'d>, at: &At) -> Vec<String> {
         let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
         let Some(chart) = key.0.filter(|c| self.program_of(*c) != at.program) else { return vec![own] };
-        let block = matches!(self.scopes.decl(key).map(|d| d.ty), Some(Type::Fb(_)));
+        let block = self.scopes.decl(key).is_some_and(VarDecl::is_instance);
         match self.program_of(chart).and_then(|p| self.units.get(p)).filter(|_| !block) {
             Some(unit) => vec![unit.clone(), own],
             None => {
@@ -321,11 +322,19 @@ impl<'d> Lower<'d> {
         nodes::name(&[&name], span)
     }
 
-    /// An initial value; of an array, a list of them.
+    /// An initial value; of an array a list of them, of an instance those of its parameters.
     pub(super) fn initial_value(&mut self, e: &Expr, chart: Option<usize>) -> Expr {
-        let ExprKind::List(values) = &e.kind else { return self.constant(e, chart) };
-        let values = values.iter().map(|(times, e)| (*times, self.constant(e, chart))).collect();
-        Expr { kind: ExprKind::List(values), at: e.at }
+        let kind = match &e.kind {
+            ExprKind::List(values) => {
+                ExprKind::List(values.iter().map(|(times, e)| (*times, self.constant(e, chart))).collect())
+            }
+            ExprKind::Call(path, fields) if path.names.is_empty() => {
+                let field = |f: &Arg| Arg { value: self.constant(&f.value, chart), ..f.clone() };
+                ExprKind::Call(path.clone(), fields.iter().map(field).collect())
+            }
+            _ => return self.constant(e, chart),
+        };
+        Expr { kind, at: e.at }
     }
 
     /// An initial value, evaluated to one literal.
@@ -372,14 +381,16 @@ impl<'d> Lower<'d> {
         list.iter().map(|s| self.stmt(s, at)).collect()
     }
 
-    /// Rewrites a block. Its own variables become variables of the program that are reset in each
-    /// run.
+    /// Rewrites a block. Its own variables become variables of the program that are reset in each run; the name of
+    /// `owner`, if it has one, begins theirs.
     pub(super) fn block(&mut self, block: &Block, at: &At<'d>, owner: &str) -> Vec<Stmt> {
         let mut inner = at.clone();
         let mut list = Vec::new();
         for local in &block.locals {
             for name in &local.names {
-                let text = self.fresh(at.program, &format!("{owner}_{}", name.text), local.ty, name.at.0);
+                let wish =
+                    if owner.is_empty() { name.text.to_string() } else { format!("{owner}_{}", name.text) };
+                let text = self.fresh(at.program, &wish, local.ty, name.at.0);
                 let init = match &local.init {
                     Some(e) => self.expr(e, at),
                     None => Expr::zero(local.ty, name.at),
@@ -451,6 +462,9 @@ impl<'d> Lower<'d> {
 
     /// A call of a function block. Other calls have no counterpart.
     fn invoked(&mut self, path: &Path, args: &[Arg], span: Span, at: &At<'d>) -> Stmt {
+        if let Some(call) = self.own_call(path, args, span, at) {
+            return call;
+        }
         if let Some(Ref::Var(key)) = self.scopes.refer(at.chart, &path.names)
             && let Some(Type::Fb(kind)) = self.scopes.decl(key).map(|d| d.ty)
             && !at.function
@@ -476,9 +490,9 @@ impl<'d> Lower<'d> {
     }
 
     /// Records who reads and who writes a variable.
-    fn note(&mut self, path: &Path, writes: bool, at: &At<'d>) {
+    pub(super) fn note(&mut self, path: &Path, writes: bool, at: &At<'d>) {
         let Some(program) = at.program else { return };
-        if let Some(Ref::Var(key) | Ref::Member(key, _) | Ref::Bit(key, _)) =
+        if let Some(Ref::Var(key) | Ref::Member(key, _) | Ref::Inner(key, _) | Ref::Bit(key, _)) =
             self.scopes.refer(at.chart, &path.names)
         {
             let uses = if writes { &mut self.written } else { &mut self.read };
@@ -513,7 +527,7 @@ fn no_call(called: &str) -> Said {
     }
 }
 
-fn named(names: &[String], span: Span) -> Expr {
+pub(super) fn named(names: &[String], span: Span) -> Expr {
     nodes::name(&names.iter().map(String::as_str).collect::<Vec<_>>(), span)
 }
 

@@ -109,6 +109,11 @@ impl Names {
         text
     }
 
+    /// Takes a name that something else has already.
+    pub(super) fn reserve(&mut self, name: &str) {
+        self.global.insert(name.to_ascii_uppercase());
+    }
+
     /// The name of a program whose own names may be equal to it.
     pub(super) fn give_unit(&mut self, name: &Name) -> String {
         let wish = identifier(&name.text);

@@ -4,7 +4,7 @@
 //! `standard` ends with it, and so do writers that put bodies into guards of their own.
 
 use g7_model::{
-    BinaryOp, Body, CaseArm, ChartItem, Document, Expr, Item, Span, Stmt, StmtKind, Target, Work,
+    BinaryOp, Body, CaseArm, ChartItem, Composed, Document, Expr, Item, Span, Stmt, StmtKind, Target, Work,
 };
 
 use crate::nodes;
@@ -15,6 +15,10 @@ pub(crate) fn without_idle(document: &mut Document) {
         Item::Pre(Body::St(block), _) | Item::Post(Body::St(block), _) => {
             shorter(&mut block.statements);
             !block.statements.is_empty()
+        }
+        Item::Composed(Composed { body: Some(Body::St(block)), .. }) => {
+            shorter(&mut block.statements);
+            true
         }
         Item::Function(function) => {
             shorter(&mut function.body.statements);

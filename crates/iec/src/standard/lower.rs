@@ -7,6 +7,7 @@ use g7_model::{
     Qualifier, Span, StepKind, Stmt, Switch, Target, VarDecl, say,
 };
 
+use super::blocks::Blocks;
 use super::identifiers::Names;
 use crate::report::renamed;
 use crate::scopes::{Ref, Scopes, StepKey, VarKey};
@@ -38,6 +39,7 @@ impl Form {
 pub(super) struct Lower<'d> {
     pub(super) document: &'d Document,
     pub(super) form: Form,
+    pub(super) blocks: &'d Blocks,
     pub(super) scopes: Scopes<'d>,
     pub(super) names: Names,
     /// The program of each chart; None for a task.
@@ -137,6 +139,7 @@ impl<'d> Lower<'d> {
     pub(super) fn new(
         document: &'d Document,
         form: Form,
+        blocks: &'d Blocks,
         shared: HashSet<VarKey<'d>>,
         read_twins: HashSet<StepKey>,
     ) -> Lower<'d> {
@@ -144,6 +147,7 @@ impl<'d> Lower<'d> {
         let mut lower = Lower {
             document,
             form,
+            blocks,
             names: Names::new(0),
             programs: Vec::new(),
             heads: Vec::new(),
@@ -255,11 +259,16 @@ impl<'d> Lower<'d> {
     /// Gives all names: first those that everyone sees, then those of each program.
     pub(super) fn name(&mut self) {
         let document = self.document;
+        self.blocks.names().for_each(|name| self.names.reserve(name));
+        // Functions come first, so that each function block and the rest of the file know them by the same names.
         for item in &document.items {
-            match item {
-                Item::Var(v) => v.names.iter().for_each(|n| self.names.give_var(None, None, n, "")),
-                Item::Function(f) => self.names.give_function(&f.name),
-                _ => {}
+            if let Item::Function(f) = item {
+                self.names.give_function(&f.name);
+            }
+        }
+        for item in &document.items {
+            if let Item::Var(v) = item {
+                v.names.iter().for_each(|n| self.names.give_var(None, None, n, ""));
             }
         }
         for (chart, def) in self.scopes.charts.clone().into_iter().enumerate() {
@@ -325,14 +334,14 @@ impl<'d> Lower<'d> {
         uses
     }
 
-    /// The problems in the order of the document.
-    pub(super) fn finish(self) -> Vec<Problem> {
+    /// The problems in the order of the document, and the names.
+    pub(super) fn finish(self) -> (Vec<Problem>, Names) {
         let mut problems = self.problems;
         problems.extend(renamed(&self.names.renamed));
         problems.sort_by_key(|p| (p.at.start, p.at.end));
         // A problem of a part that two programs share is reported once.
         problems.dedup_by(|a, b| a.code == b.code && a.at == b.at && a.what == b.what);
-        problems
+        (problems, self.names)
     }
 
     /// Reports rules of the document that differ from those of IEC 61131-3.

@@ -20,6 +20,7 @@
 mod actions;
 mod arrays;
 mod assemble;
+mod blocks;
 mod bodies;
 mod counts;
 mod identifiers;
@@ -30,11 +31,13 @@ mod watch;
 
 use std::collections::HashSet;
 
-use g7_model::{Chart, Document, Problem, codes, say};
+use g7_model::{Chart, Document, Item, Problem, codes, say};
 
 use crate::signs;
 
+use blocks::Blocks;
 pub(crate) use counts::LONGEST;
+use identifiers::Names;
 pub(crate) use idle::without_idle;
 pub(crate) use lower::Form;
 use lower::Lower;
@@ -48,17 +51,29 @@ pub(crate) fn without_steps(chart: &Chart) -> Option<Problem> {
 /// Rewrites a document; returns it with the problems of what it does not carry.
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
     let document = &signs::in_signs(document);
+    let mut blocks = Blocks::of(document);
+    let (made, mut problems) = blocks.lowered(document, form);
+    let (mut out, mut own, mut names) = lowered(document, form, &blocks);
+    out.items.splice(1..1, made.into_iter().map(Item::Composed));
+    without_idle(&mut out);
+    arrays::named(&mut out, &mut names);
+    problems.append(&mut own);
+    problems.sort_by_key(|p| (p.at.start, p.at.end));
+    (out, problems)
+}
+
+/// Rewrites all but the function blocks of a document. The first item of the result is the profile.
+fn lowered(document: &Document, form: Form, blocks: &Blocks) -> (Document, Vec<Problem>, Names) {
     // The variables that several programs use, and the steps that are read, become known on the way,
     // so this repeats until no new one is found.
     let (mut shared, mut read_twins) = (HashSet::new(), HashSet::new());
     loop {
         let known = read_twins.len();
-        let mut lower = Lower::new(document, form, shared, read_twins);
-        let mut out = lower.document();
+        let mut lower = Lower::new(document, form, blocks, shared, read_twins);
+        let out = lower.document();
         if lower.wanted.is_subset(&lower.shared) && lower.read_twins.len() == known {
-            without_idle(&mut out);
-            arrays::named(&mut out, &mut lower.names);
-            return (out, lower.finish());
+            let (problems, names) = lower.finish();
+            return (out, problems, names);
         }
         read_twins = std::mem::take(&mut lower.read_twins);
         shared = std::mem::take(&mut lower.shared);

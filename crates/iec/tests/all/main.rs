@@ -1,5 +1,6 @@
 //! The tests of the formats of IEC 61131-3. They are one program, because linking one for each file would take longer than compiling them.
 
+mod blocks;
 mod plcopen;
 mod returned;
 mod sfc;

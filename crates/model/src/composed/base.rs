@@ -2,6 +2,7 @@
 
 use std::collections::{HashMap, HashSet};
 
+use super::kept::Kept;
 use crate::{
     Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Layout, Name, Problem, Said, Span, Type,
     VarDecl, VarKind,
@@ -43,6 +44,8 @@ pub struct Composition<'d> {
     values: HashSet<&'d str>,
     /// The types of which there are variables.
     pub(super) used: HashSet<&'d str>,
+    /// The function blocks that stay, see [`super::kept`].
+    pub(super) kept: Kept,
     /// How many variables and statements can still be made.
     pub(super) room: usize,
     pub(super) full: bool,
@@ -73,6 +76,8 @@ pub(super) struct Spot<'d> {
     pub(super) own: Vec<Expr>,
     pub(super) decl: &'d VarDecl,
     pub(super) of: Option<&'d Composed>,
+    /// The instance of a function block that stays, and the member of it that is meant.
+    pub(super) within: Option<(&'d Composed, Name)>,
     /// True if only the function block itself can write it.
     pub(super) inner: bool,
     /// The names behind a variable: a bit, or a member of a function block of the standard.
@@ -110,6 +115,7 @@ impl<'d> Composition<'d> {
             enumerations: HashSet::new(),
             values: HashSet::new(),
             used: HashSet::new(),
+            kept: Kept::default(),
             room: MOST,
             full: false,
             loops: Vec::new(),

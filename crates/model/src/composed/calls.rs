@@ -64,6 +64,11 @@ impl<'d> Composition<'d> {
             self.problems.push(Problem::new(&codes::NOT_HERE, at_of(&segments), what).help(help));
             return Vec::new();
         }
+        if self.kept.has(of)
+            && let Some(kind) = self.kept_call(&spot, of, &args, env)
+        {
+            return vec![Stmt { kind, at }];
+        }
         let call = Call { of, args: &args, at };
         self.chosen(spot, &call, env).unwrap_or_default()
     }
@@ -192,6 +197,16 @@ impl<'d> Composition<'d> {
             self.output(arg, output, at, env, &mut list);
         }
         Some(list)
+    }
+
+    /// The name of the parameter that an argument is for, and true if it is an in-out.
+    pub(super) fn name_of_argument(
+        &mut self,
+        of: &'d Composed,
+        n: usize,
+        arg: &Arg,
+    ) -> Option<(&'d Name, bool)> {
+        self.parameter(of, n, arg).map(|p| (p.name, p.inout))
     }
 
     /// The parameter that an argument is for.

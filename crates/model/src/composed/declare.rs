@@ -45,6 +45,10 @@ impl<'d> Composition<'d> {
             return vec![v];
         };
         self.used.insert(&ty.name.text);
+        if self.keeps(ty, v.array.is_none(), v.init.as_ref()) {
+            v.init.iter_mut().for_each(|e| self.expr(e, env));
+            return vec![VarDecl { of: Some(of), ..v }];
+        }
         if v.array.is_some() {
             // The parser has reported a value that is no list.
             v.init = v.init.filter(|e| matches!(e.kind, ExprKind::List(_)));
@@ -174,6 +178,11 @@ impl<'d> Composition<'d> {
         let own = bounds(of, member);
         if let Some(ty) = self.type_of(member) {
             self.used.insert(&ty.name.text);
+            let single = own.is_empty() && part.dimensions.is_empty();
+            if self.keeps(ty, single, part.values.iter().flatten().next()) {
+                let of = Some(Box::new(ty.name.clone()));
+                return all.push(VarDecl { of, ..leaf(member, part) });
+            }
             part.values = self.values(&own, part.values, ty, env);
             part.text = with_slot(&part.text, own.len());
             part.dimensions.extend(own);

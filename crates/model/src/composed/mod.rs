@@ -21,6 +21,7 @@ mod charts;
 mod chosen;
 mod copies;
 mod declare;
+mod kept;
 mod paths;
 mod returns;
 mod types;
@@ -31,6 +32,7 @@ use std::borrow::Cow;
 use crate::{Composed, Document, Item, Problem};
 
 pub use base::Composition;
+pub use kept::{as_block, as_document, with_blocks};
 pub use types::DEEP;
 pub(crate) use types::{defined_twice, of_language, unknown_type};
 

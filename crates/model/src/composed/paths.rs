@@ -174,6 +174,7 @@ impl<'d> Composition<'d> {
             own: segment.index.clone(),
             of: self.type_of(decl),
             decl,
+            within: None,
             inner: false,
             tail: Vec::new(),
             whole: false,
@@ -197,6 +198,9 @@ impl<'d> Composition<'d> {
         let Some(of) = spot.of else { return Err(Lost) };
         let name = &segment.name;
         let Some(decl) = member(of, &name.text) else { return Err(self.no_member(of, name)) };
+        if self.kept.has(of) {
+            return Ok(self.member_of_kept(spot, of, decl, segment));
+        }
         spot = self.entered(spot)?;
         if is_local(of, decl) && !spot.index.is_empty() {
             spot.text = self.numbered(&spot)?;
@@ -377,6 +381,7 @@ impl Spot<'_> {
     pub(super) fn kind(self) -> ExprKind {
         let mut names: Vec<Name> = self.chart.into_iter().collect();
         names.push(Name::new(self.text, self.at));
+        names.extend(self.within.map(|(_, member)| member));
         let mut tail = self.tail;
         let index: Vec<Expr> = self.index.into_iter().chain(self.own).collect();
         if index.is_empty() {

@@ -10,12 +10,18 @@ use crate::{
 impl<'d> Composition<'d> {
     /// Replaces the structures and function blocks of a document. Returns the problems of types and calls as well.
     pub(super) fn document(mut self, document: &'d Document) -> (Document, Vec<Problem>) {
+        let made = self.walked(document);
+        self.unused(document);
+        (made, self.problems)
+    }
+
+    /// The same; the problems stay here.
+    pub(super) fn walked(&mut self, document: &'d Document) -> Document {
         let mut items = Vec::new();
         for item in &document.items {
             self.item(item, &mut items);
         }
-        self.unused(document);
-        (Document { items, notes: document.notes.clone() }, self.problems)
+        Document { items, notes: document.notes.clone() }
     }
 
     fn item(&mut self, item: &'d Item, items: &mut Vec<Item>) {
@@ -91,7 +97,8 @@ impl<'d> Composition<'d> {
     fn action(&mut self, action: &mut Action, env: &Env<'_, 'd>) {
         match &mut action.kind {
             ActionKind::Qualified { time, target, condition, .. } => {
-                time.iter_mut().chain(condition).for_each(|e| self.expr(e, env));
+                time.iter_mut().for_each(|e| self.expr(e, env));
+                self.condition(condition, env);
                 self.action_target(target, action.at.0, env);
             }
             ActionKind::OnEvent { event, work } => {
@@ -100,10 +107,16 @@ impl<'d> Composition<'d> {
             }
             ActionKind::EachScan { work, condition } => {
                 self.work(work, env);
-                condition.iter_mut().for_each(|e| self.expr(e, env));
+                self.condition(condition, env);
             }
             ActionKind::Order(_) | ActionKind::Comment(_) => {}
         }
+    }
+
+    fn condition(&mut self, condition: &mut Option<Expr>, env: &Env<'_, 'd>) {
+        self.kept.in_condition = true;
+        condition.iter_mut().for_each(|e| self.expr(e, env));
+        self.kept.in_condition = false;
     }
 
     fn action_target(&mut self, target: &mut Target, at: crate::Span, env: &Env<'_, 'd>) {
@@ -116,6 +129,7 @@ impl<'d> Composition<'d> {
             Target::Work(work) => return self.work(work, env),
             Target::Direct(..) => return,
         };
+        self.no_member_of_kept(&e, env);
         self.target(&mut e, env);
         *target = match e.kind {
             ExprKind::Path(path) => Target::Path(path),
@@ -199,6 +213,7 @@ impl<'d> Composition<'d> {
                 let bounds = (self.whole(&from, env).filter(|_| upward), self.whole(&to, env));
                 let written = var.clone();
                 let mut name = Expr { kind: ExprKind::Path(Path { names: vec![var.clone()] }), at: var.at };
+                self.no_member_of_kept(&name, env);
                 self.target(&mut name, env);
                 match one_name(name.kind) {
                     Some(plain) => var = plain,

@@ -175,7 +175,7 @@ impl<'d> Speech<'d> {
                     nodes::boolean(false, at)
                 }
             },
-            Some(Ref::Section(..) | Ref::Action(..) | Ref::Seconds(_)) | None => {
+            Some(Ref::Section(..) | Ref::Action(..) | Ref::Seconds(_) | Ref::Inner(..)) | None => {
                 self.cannot(at.into(), say!("the use of `{}` as a value", path.text()));
                 nodes::boolean(false, at)
             }

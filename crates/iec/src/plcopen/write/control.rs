@@ -18,9 +18,9 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    Action, ActionKind, BinaryOp, Body, Chart, ChartItem, ChartKind, Document, Expr, ExprKind, FbKind, Item,
-    Literal, Name, NamedAction, Nanos, Path, Problem, Qualifier, Span, Step, Stmt, StmtKind, Target, Type,
-    VarDecl, VarKind, codes, say,
+    Action, ActionKind, BinaryOp, Body, Chart, ChartItem, ChartKind, Composed, Document, Expr, ExprKind,
+    FbKind, Item, Literal, Name, NamedAction, Nanos, Path, Problem, Qualifier, Span, Step, Stmt, StmtKind,
+    Target, Type, VarDecl, VarKind, codes, say,
 };
 
 use super::clocks::{Clocks, outputs_apart};
@@ -41,7 +41,9 @@ pub(super) fn control(mut document: Document, problems: &mut Vec<Problem>) -> Do
                 Control { taken, written: &written, given: &given, problems, vars, clocks: &mut clocks }
                     .chart(chart, &variables);
             }
-            Item::Pre(Body::St(block), _) | Item::Post(Body::St(block), _) => {
+            Item::Pre(Body::St(block), _)
+            | Item::Post(Body::St(block), _)
+            | Item::Composed(Composed { body: Some(Body::St(block)), .. }) => {
                 outputs_apart(&mut block.statements);
             }
             _ => {}

@@ -1,6 +1,6 @@
 //! Declarations of variables.
 
-use g7_model::{Document, Expr, ExprKind, Item, Name, Type, VarDecl, VarKind};
+use g7_model::{Composed, Document, Expr, ExprKind, Item, Name, Type, VarDecl, VarKind};
 
 use crate::st::{Known, Writer};
 use crate::xml::element::Element;
@@ -49,6 +49,10 @@ pub(super) fn initial(value: &Expr, ty: Type) -> Element {
             let one = if *times == 1 { one } else { one.with("repetitionValue", times) };
             one.child(simple(e))
         })),
+        ExprKind::Call(_, fields) => Element::new("structValue").children(fields.iter().map(|f| {
+            let value = Element::new("simpleValue").with("value", Writer { types: &types }.plain(&f.value));
+            Element::new("value").with("member", f.name.as_ref().map_or("", |n| &n.text)).child(value)
+        })),
         _ => simple(value),
     };
     Element::new("initialValue").child(made)
@@ -91,6 +95,19 @@ pub(super) fn lists(variables: &[&VarDecl], global: bool) -> Vec<Element> {
         if some {
             all.push(made);
         }
+    }
+    all
+}
+
+/// The lists of a function block of the file.
+pub(super) fn parameters(block: &Composed) -> Vec<Element> {
+    let mut all = lists(&block.members.iter().collect::<Vec<_>>(), false);
+    let mut inouts = Element::new("inOutVars");
+    for decl in &block.inouts {
+        decl.names.iter().for_each(|n| inouts.push(variable(decl, n)));
+    }
+    if !block.inouts.is_empty() {
+        all.push(inouts);
     }
     all
 }

@@ -8,8 +8,8 @@ use std::collections::HashSet;
 
 use g7_model::visit_mut::{self, Visitor};
 use g7_model::{
-    Chart, ChartItem, Document, Expr, ExprKind, Item, Moment, Nanos, Problem, Said, Transition, Type, codes,
-    say,
+    Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Moment, Nanos, Problem, Said,
+    Transition, Type, codes, say,
 };
 
 use crate::nodes;
@@ -98,5 +98,11 @@ pub(super) fn conversions(document: &mut Document, problems: &mut Vec<Problem>) 
             self.0.push(Problem::new(&codes::DIFFERENT, e.at.0, what));
         }
     }
-    visit_mut::document(document, &mut Conversions(problems));
+    let mut conversions = Conversions(problems);
+    visit_mut::document(document, &mut conversions);
+    for item in &mut document.items {
+        if let Item::Composed(Composed { body: Some(Body::St(block)), .. }) = item {
+            visit_mut::stmts(&mut block.statements, &mut conversions);
+        }
+    }
 }

@@ -3,13 +3,13 @@
 use std::collections::HashSet;
 
 use g7_model::{
-    Block, Body, Chart, ChartItem, ChartKind, Document, Function, Item, NamedAction, Nanos, Problem, Section,
-    StepKind, Switch, VarDecl,
+    Block, Body, Chart, ChartItem, ChartKind, Composed, Document, Function, Item, NamedAction, Nanos,
+    Problem, Section, StepKind, Switch, VarDecl,
 };
 
 use super::codesys::{by_flags, from_outside, is_given, steps_alone};
 use super::control::control;
-use super::declare::{data_types, external, in_order, initial, lists, type_of};
+use super::declare::{data_types, external, in_order, initial, lists, parameters, type_of};
 use super::sfc::Sfc;
 use crate::Written;
 use crate::nodes::Taken;
@@ -121,6 +121,11 @@ impl<'w> Project<'w> {
             }
         }
         for item in &document.items {
+            if let Item::Composed(block) = item {
+                pous.push(self.function_block(block));
+            }
+        }
+        for item in &document.items {
             if let Item::Pre(body, _) = item {
                 self.text("Pre", body, &mut pous, &mut programs);
             }
@@ -166,6 +171,7 @@ impl<'w> Project<'w> {
             match item {
                 Item::Var(v) => v.names.iter().for_each(&mut take),
                 Item::Function(f) => take(&f.name),
+                Item::Composed(c) => take(&c.name),
                 Item::Chart(c) => {
                     c.vars().flat_map(|v| &v.names).for_each(&mut take);
                     c.steps().for_each(|s| take(&s.name));
@@ -214,6 +220,7 @@ impl<'w> Project<'w> {
             self.document.items.iter().any(|i| match i {
                 Item::Var(v) => v.names.iter().any(named),
                 Item::Function(f) => named(&f.name),
+                Item::Composed(c) => named(&c.name),
                 Item::Chart(c) => named(&c.name),
                 _ => false,
             })
@@ -318,6 +325,21 @@ impl<'w> Project<'w> {
             c.items.iter().filter_map(|i| if let ChartItem::Section(s) = i { Some(s) } else { None })
         };
         self.with_expansions(chart).into_iter().flat_map(of).collect()
+    }
+
+    fn function_block(&self, block: &'w Composed) -> Element {
+        let types = Known::of_block(self.document, block);
+        let statements = block.body.as_ref().map_or(&[][..], |b| &b.block().statements);
+        let text = Writer { types: &types }.body(statements);
+        let mut pou = Element::new("pou")
+            .with("name", &block.name.text)
+            .with("pouType", "functionBlock")
+            .child(Element::new("interface").children(parameters(block)))
+            .child(Element::new("body").child(Element::formatted("ST", &text)));
+        if let Some(comment) = &block.comment {
+            pou.push(Element::formatted("documentation", comment));
+        }
+        pou
     }
 
     fn function(&self, function: &'w Function) -> Element {

@@ -9,8 +9,8 @@ mod chart;
 use std::collections::HashSet;
 
 use g7_model::{
-    Body, Chart, Document, Expr, ExprKind, Function, Item, Nanos, Problem, Span, Type, VarDecl, VarKind,
-    codes, say,
+    Arg, Body, Chart, Composed, Document, Expr, ExprKind, Function, Item, Nanos, Problem, Span, Type,
+    VarDecl, VarKind, codes, say,
 };
 
 use crate::Written;
@@ -52,6 +52,11 @@ impl<'d> Exporter<'d> {
         for item in &document.items {
             if let Item::Function(f) = item {
                 text.push_str(&self.function(f));
+            }
+        }
+        for item in &document.items {
+            if let Item::Composed(c) = item {
+                text.push_str(&self.function_block(c));
             }
         }
         if !text.is_empty() {
@@ -190,6 +195,25 @@ impl<'d> Exporter<'d> {
         programs
     }
 
+    fn function_block(&self, c: &'d Composed) -> String {
+        let mut declarations = Declarations::default();
+        for decl in &c.members {
+            decl.names.iter().for_each(|n| declarations.own(decl, &n.text));
+        }
+        for decl in &c.inouts {
+            decl.names.iter().for_each(|n| declarations.add("VAR_IN_OUT", line(decl, &n.text)));
+        }
+        let types = Known::of_block(self.document, c);
+        let mut body = String::new();
+        if let Some(code) = &c.body {
+            Writer { types: &types }.statements(&code.block().statements, 1, &mut body);
+        }
+        if body.is_empty() {
+            body.push_str("  ;\n");
+        }
+        format!("FUNCTION_BLOCK {}\n{}\n{body}END_FUNCTION_BLOCK\n\n", c.name.text, declarations.print(1))
+    }
+
     fn function(&self, f: &'d Function) -> String {
         let mut text = format!("FUNCTION {} : {}\n", f.name.text, type_name(f.result));
         let mut types = Known::new(self.document, None).own(&f.name.text, f.result);
@@ -221,7 +245,8 @@ impl<'d> Exporter<'d> {
 /// A function block that only one program uses is declared there, because few tools allow global
 /// ones, and so is a text, because the standard has no length of one that is external.
 fn local(decl: &VarDecl, name: &str, used: &[HashSet<&str>]) -> bool {
-    matches!(decl.ty, Type::Fb(_) | Type::String(_)) && used.iter().filter(|u| u.contains(name)).count() < 2
+    (decl.is_instance() || matches!(decl.ty, Type::String(_)))
+        && used.iter().filter(|u| u.contains(name)).count() < 2
 }
 
 /// The set of words in a text.
@@ -229,17 +254,27 @@ fn words(text: &str) -> HashSet<&str> {
     text.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect()
 }
 
-/// ` := value`, or ` := [1, 2, 3(0)]`.
+/// ` := value`, ` := [1, 2, 3(0)]`, or ` := (a := 1, b := 2)`.
 fn initial(init: Option<&Expr>, ty: Type) -> String {
     let Some(e) = init else { return String::new() };
     let types = Known::default();
-    let value = |e: &Expr| Writer { types: &types }.value(e, ty);
-    let ExprKind::List(values) = &e.kind else { return format!(" := {}", value(e)) };
+    let writer = Writer { types: &types };
+    let value = |e: &Expr| writer.value(e, ty);
     let one = |(times, e): &(u32, Expr)| match times {
         1 => value(e),
         n => format!("{n}({})", value(e)),
     };
-    format!(" := [{}]", values.iter().map(one).collect::<Vec<_>>().join(", "))
+    let field = |f: &Arg| {
+        let name = f.name.as_ref().map_or("", |n| &n.text);
+        format!("{name} := {}", writer.plain(&f.value))
+    };
+    match &e.kind {
+        ExprKind::List(values) => format!(" := [{}]", values.iter().map(one).collect::<Vec<_>>().join(", ")),
+        ExprKind::Call(_, fields) => {
+            format!(" := ({})", fields.iter().map(field).collect::<Vec<_>>().join(", "))
+        }
+        _ => format!(" := {}", value(e)),
+    }
 }
 
 /// A comment must not contain the sign that ends it.

@@ -1,0 +1,263 @@
+//! Function blocks of the file in written files: which of them stay, and how they stand there.
+
+use g7_exchange::{Dialect, Written};
+use g7_model::{Document, FileId, Item, Severity};
+
+use crate::support;
+
+const COUNT: &str = "function block Count {
+  input up : BOOL
+  input step_by : REAL := 1.0
+  output n : REAL
+  output mask : WORD
+  inout total : REAL
+  var calls : INT
+  body {
+    var twice : REAL
+    calls := calls + 1
+    IF not up THEN RETURN END_IF
+    twice := step_by * factor
+    n := n + step_by
+    total := total + twice
+    mask.3 := n > limit
+  }
+}
+const factor : REAL := 2.0
+const limit : INT := 7
+input a : BOOL
+output x : REAL
+output y : BOOL
+var sum : REAL
+var first : Count := (step_by := 3, mask := 1)
+";
+
+fn document(text: &str) -> Document {
+    let (document, problems) = g7_syntax::parse(text, FileId(0));
+    assert_eq!(problems, [], "{text}");
+    let (_, problems) = g7_compile::compile(&document);
+    let errors: Vec<_> = problems.iter().filter(|p| p.severity() == Severity::Error).collect();
+    assert_eq!(errors, Vec::<&g7_model::Problem>::new(), "{text}");
+    document
+}
+
+/// The file with `Count` and a chart with this text.
+fn with_chart(chart: &str) -> Document {
+    document(&format!("profile iec61131\n{COUNT}{chart}"))
+}
+
+const CHART: &str = "chart G {
+  initial step 1 { each scan: first(a, total := sum, n => x) }
+  1 -> 1 when first.n > 3 and first.mask.3
+}
+post { y := first.mask.0  first.up := a }
+";
+
+fn text_of(document: &Document) -> String {
+    clean(support::export("sfc", document))
+}
+
+fn project(document: &Document, dialect: Dialect) -> String {
+    let format = g7_exchange::named("plcopen").expect("a format of the table");
+    clean(format.write_in(document, dialect).expect("it has dialects"))
+}
+
+fn clean(written: Written) -> String {
+    let errors: Vec<_> = written.problems.iter().filter(|p| p.severity() == Severity::Error).collect();
+    assert_eq!(errors, Vec::<&g7_model::Problem>::new(), "{}", written.text);
+    written.text
+}
+
+/// True if a text contains these lines in this order, apart from the spaces before them.
+fn has(text: &str, lines: &str) -> bool {
+    let mut all = text.lines().map(str::trim);
+    lines.lines().map(str::trim).all(|line| all.any(|l| l == line))
+}
+
+#[test]
+fn a_function_block_stays_one_in_text() {
+    let text = text_of(&with_chart(CHART));
+    let block = "FUNCTION_BLOCK Count
+        VAR_INPUT
+        up : BOOL;
+        step_by : REAL := 1.0;
+        END_VAR
+        VAR_OUTPUT
+        n : REAL;
+        mask : WORD;
+        END_VAR
+        VAR
+        calls : INT;
+        twice : REAL;
+        END_VAR
+        VAR_IN_OUT
+        total : REAL;
+        END_VAR
+        twice := 0.0;
+        calls := calls + 1;
+        IF NOT up THEN
+        RETURN;
+        END_IF;
+        twice := step_by * 2.0;
+        n := n + step_by;
+        total := total + twice;
+        END_FUNCTION_BLOCK";
+    assert!(has(&text, block), "{text}");
+    assert!(has(&text, "first : Count := (step_by := 3.0, mask := WORD#1);"), "{text}");
+    assert!(text.contains("first(up := a, total := sum, n => x)"), "{text}");
+    assert!(text.contains("first.up := a;"), "{text}");
+}
+
+#[test]
+fn a_function_block_stays_one_in_a_project() {
+    let xml = project(&with_chart(CHART), Dialect::Standard);
+    let lines = r#"<pou name="Count" pouType="functionBlock">
+        <interface>
+        <inputVars>
+        <variable name="up">
+        <variable name="step_by">
+        <outputVars>
+        <variable name="n">
+        <variable name="mask">
+        <localVars>
+        <variable name="calls">
+        <inOutVars>
+        <variable name="total">
+        <body>
+        <variable name="first">
+        <derived name="Count"/>
+        <structValue>
+        <value member="step_by">
+        <simpleValue value="3.0"/>"#;
+    assert!(has(&xml, lines), "{xml}");
+}
+
+/// The generator of Beremiz leaves out the initial values of an instance.
+#[test]
+fn an_instance_with_initial_values_is_taken_apart_for_matiec() {
+    let plain = with_chart(CHART);
+    let without =
+        document(&format!("profile iec61131\n{COUNT}{CHART}").replace(" := (step_by := 3, mask := 1)", ""));
+    for dialect in [Dialect::Beremiz, Dialect::OpenPlc] {
+        assert!(!project(&plain, dialect).contains("functionBlock"));
+        assert!(project(&without, dialect).contains("functionBlock"));
+    }
+}
+
+/// The names of the function blocks in a document.
+fn blocks(document: &Document) -> Vec<&str> {
+    let composed =
+        document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None });
+    composed.map(|c| &*c.name.text).collect()
+}
+
+#[test]
+fn text_that_is_read_again_has_the_function_block() {
+    let text = text_of(&with_chart(CHART));
+    let (again, problems) = support::import("sfc", text.as_bytes(), FileId(1));
+    let errors: Vec<_> = problems.iter().filter(|p| p.severity() == Severity::Error).collect();
+    assert_eq!(errors, Vec::<&g7_model::Problem>::new(), "{text}");
+    assert_eq!(blocks(&again), ["Count"]);
+    assert_eq!(text_of(&again).matches("FUNCTION_BLOCK Count").count(), 1);
+}
+
+#[test]
+fn a_function_block_stands_behind_those_that_it_has_instances_of() {
+    let pair = "function block Pair {
+      input go : BOOL
+      output done : BOOL
+      inout total : REAL
+      var one, two : Count
+      body {
+        one(up := go, total := total)
+        two(up := one.mask.3, step_by := one.n, total := total)
+        done := two.mask.3
+      }
+    }
+    var pair : Pair
+    chart G { initial step 1 { each scan: pair(go := a, total := sum, done => y) } }
+    post { x := first.n }
+    ";
+    // The outer one comes first here.
+    let text = text_of(&document(&format!("profile iec61131\n{}{COUNT}", pair)));
+    let place = |name: &str| text.find(&format!("FUNCTION_BLOCK {name}\n")).expect(name);
+    assert!(place("Count") < place("Pair"), "{text}");
+    assert!(
+        text.contains("two(up := (one.mask AND WORD#16#8) <> WORD#16#0, step_by := one.n, total := total);"),
+        "{text}"
+    );
+}
+
+#[test]
+fn what_a_file_has_no_instance_of_is_left_out() {
+    let text = text_of(&with_chart(
+        "chart G { initial step 1 }\npost { y := a  first.up := a }\nfunction block Idle { input a : BOOL body { } }\n",
+    ));
+    assert!(text.contains("FUNCTION_BLOCK Count") && !text.contains("Idle"), "{text}");
+}
+
+/// A function block with one of these uses is taken apart: its text stands in the place of its calls.
+#[test]
+fn a_function_block_is_taken_apart_where_it_could_not_mean_the_same() {
+    let call = "each scan: first(a, total := sum)";
+    let uses = [
+        (
+            "an array of instances",
+            "var all : ARRAY[1..2] OF Count\npost { all[1](up := a, total := sum) }\nchart G { initial step 1 }",
+        ),
+        (
+            "an inner variable that others read",
+            "post { first(up := a, total := sum) y := first.calls > 3 }\nchart G { initial step 1 }",
+        ),
+        ("an input that a step drives", &format!("chart G {{ initial step 1 {{ N first.up  {call} }} }}")),
+        (
+            "an output in the condition of an action",
+            &format!("chart G {{ initial step 1 {{ N y if first.n > 3  {call} }} }}"),
+        ),
+        (
+            "an instance in a structure",
+            "struct Two { one : Count }\nvar two : Two\npost { two.one(up := a, total := sum) y := first.up }\nchart G { initial step 1 }",
+        ),
+    ];
+    for (what, chart) in uses {
+        let text = text_of(&with_chart(&format!("{chart}\n")));
+        let stays = what == "an instance in a structure";
+        assert_eq!(text.contains("FUNCTION_BLOCK"), stays, "{what}: {text}");
+    }
+}
+
+#[test]
+fn a_function_block_that_names_variables_of_the_file_is_taken_apart() {
+    for body in ["y := up", "g := 3", "FOR g := 1 TO 3 DO n := n + 1 END_FOR", "n := g"] {
+        let text = format!(
+            "profile iec61131\nvar y : BOOL\nvar g : INT\nfunction block B {{ input up : BOOL output n : INT body {{ {body} }} }}\nvar b : B\nchart G {{ initial step 1 }}\npost {{ b(up := TRUE) }}\n"
+        );
+        let written = text_of(&document(&text));
+        assert!(!written.contains("FUNCTION_BLOCK"), "{body}: {written}");
+    }
+}
+
+#[test]
+fn names_that_the_standard_does_not_have_are_changed_everywhere() {
+    let text = "profile iec61131
+function block Zähler { input word : BOOL output größe : INT body { IF word THEN größe := größe + 1 END_IF } }
+var z : Zähler := (größe := 4)
+output x : INT
+chart G { initial step 1 { each scan: z(word := TRUE, größe => x) } 1 -> 1 when z.größe > 5 }
+";
+    let written = text_of(&document(text));
+    assert!(!written.contains('ä') && !written.contains('ö'), "{written}");
+    let (again, problems) = support::import("sfc", written.as_bytes(), FileId(1));
+    assert!(problems.iter().all(|p| p.severity() != Severity::Error), "{problems:?} {written}");
+    assert_eq!(blocks(&again).len(), 1, "{written}");
+}
+
+#[test]
+fn codesys_declares_an_instance_of_several_programs_once() {
+    let chart = "chart G { initial step 1 { each scan: first(a, total := sum) } }
+chart H { initial step 1 1 -> 1 when first.mask.3 }
+";
+    let document = with_chart(chart);
+    let xml = project(&document, Dialect::Codesys);
+    assert!(has(&xml, "<globalVars name=\"Variables\">\n<variable name=\"first\">"), "{xml}");
+    assert_eq!(xml.matches("pouType=\"functionBlock\"").count(), 1, "{xml}");
+}
