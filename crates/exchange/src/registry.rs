@@ -197,11 +197,12 @@ impl Format {
 fn with_plain(document: &Document, keeps: Keeps, write: impl FnOnce(&Document) -> Written) -> Written {
     let typed = declared(document).0;
     let charts = instantiated(&typed).0;
-    let plain = match keeps {
-        Keeps::None => decomposed(&charts).0,
+    let (plain, mut told) = match keeps {
+        Keeps::None => (decomposed(&charts).0, Vec::new()),
         Keeps::Blocks { initial } => with_blocks(&charts, initial),
     };
     let (plain, mut problems) = singled(&plain, keeps);
+    problems.append(&mut told);
     let mut written = write(&plain);
     written.problems.append(&mut problems);
     written.problems.sort_by_key(|p| (p.at.start, p.at.end));

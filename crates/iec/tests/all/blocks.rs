@@ -131,6 +131,41 @@ fn a_function_block_stays_one_in_a_project() {
     assert!(has(&xml, lines), "{xml}");
 }
 
+#[test]
+fn an_array_of_instances_is_an_instance_for_each_element() {
+    let chart = "var all : ARRAY[1..2] OF Count
+      var i : INT := 1
+      post {
+        all[1](up := a, total := sum)
+        all[i](up := FALSE, total := sum)
+        FOR i := 1 TO 2 DO all[i](total := sum) END_FOR
+        y := all[2].mask.0
+      }
+      chart G { initial step 1 }
+      ";
+    let written = support::export("sfc", &with_chart(chart));
+    let bounds = |p: &&g7_model::Problem| p.what.to_string().contains("of the bounds of `all`");
+    assert_eq!(written.problems.iter().filter(bounds).count(), 1, "{:?}", written.problems);
+    let text = clean(written);
+    let lines = "all_1 : Count;
+        all_2 : Count;
+        all_1(up := a, total := sum);
+        CASE i OF
+        1:
+        all_1(up := FALSE, total := sum);
+        2:
+        all_2(up := FALSE, total := sum);
+        END_CASE;
+        CASE i OF
+        1:
+        all_1(total := sum);
+        2:
+        all_2(total := sum);
+        END_CASE;
+        y := (all_2.mask AND WORD#16#1) <> WORD#16#0;";
+    assert!(has(&text, lines), "{text}");
+}
+
 /// The generator of Beremiz leaves out the initial values of an instance.
 #[test]
 fn an_instance_with_initial_values_is_taken_apart_for_matiec() {
@@ -201,8 +236,8 @@ fn a_function_block_is_taken_apart_where_it_could_not_mean_the_same() {
     let call = "each scan: first(a, total := sum)";
     let uses = [
         (
-            "an array of instances",
-            "var all : ARRAY[1..2] OF Count\npost { all[1](up := a, total := sum) }\nchart G { initial step 1 }",
+            "an element that an index chooses",
+            "var all : ARRAY[1..2] OF Count\nvar i : INT := 1\npost { all[1](up := a, total := sum) x := all[i].n }\nchart G { initial step 1 }",
         ),
         (
             "an inner variable that others read",

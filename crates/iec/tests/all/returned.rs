@@ -107,6 +107,12 @@ fn element(name: &str) -> Option<String> {
     (!indexes.is_empty()).then(|| format!("{}[{}]", (base + rest).replace('.', "_"), indexes.join(",")))
 }
 
+/// Its name where the instance that it belongs to stays one: `valve_3.open` for `valve[3].open`.
+fn of_instance(name: &str) -> Option<String> {
+    let (instance, member) = name.rsplit_once('.')?;
+    Some(format!("{}.{member}", single(instance)))
+}
+
 /// The new form of a name: the same, or one made of it.
 fn counterpart<'a>(name: &str, there: &'a BTreeSet<String>, macros: &Macros) -> Option<&'a String> {
     if let Some(same) = there.get(name) {
@@ -121,6 +127,7 @@ fn counterpart<'a>(name: &str, there: &'a BTreeSet<String>, macros: &Macros) -> 
     let expansion = macros.get(home).map_or(home, String::as_str);
     let home = &single(home);
     let wanted = [
+        of_instance(name).unwrap_or_else(|| single(name)),
         element(name).unwrap_or_else(|| single(name)),
         single(name),
         format!("{home}_{step}"),

@@ -64,11 +64,6 @@ impl<'d> Composition<'d> {
             self.problems.push(Problem::new(&codes::NOT_HERE, at_of(&segments), what).help(help));
             return Vec::new();
         }
-        if self.kept.has(of)
-            && let Some(kind) = self.kept_call(&spot, of, &args, env)
-        {
-            return vec![Stmt { kind, at }];
-        }
         let call = Call { of, args: &args, at };
         self.chosen(spot, &call, env).unwrap_or_default()
     }
@@ -115,6 +110,7 @@ impl<'d> Composition<'d> {
         let within = bound(all.first()).zip(bound(all.last()));
         let otherwise = match within {
             Some((least, most)) if self.stays_within(written, least, most) => Vec::new(),
+            _ if self.kept.has(call.of) => self.nothing_outside(&spot),
             _ => self.outside(&spot, &selector, call),
         };
         Some(vec![Stmt { kind: StmtKind::Case(selector, arms, otherwise), at: call.at }])
@@ -138,6 +134,11 @@ impl<'d> Composition<'d> {
 
     fn inlined(&mut self, spot: Spot<'d>, call: &Call<'_, 'd>, env: &Env<'_, 'd>) -> Option<Vec<Stmt>> {
         let Call { of, args, at } = *call;
+        if self.kept.has(of)
+            && let Some(kind) = self.kept_call(&spot, of, args, env)
+        {
+            return Some(vec![Stmt { kind, at }]);
+        }
         if !self.takes(1 + args.len(), at.0) {
             return None;
         }

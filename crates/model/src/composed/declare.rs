@@ -45,9 +45,8 @@ impl<'d> Composition<'d> {
             return vec![v];
         };
         self.used.insert(&ty.name.text);
-        if self.keeps(ty, v.array.is_none(), v.init.as_ref()) {
-            v.init.iter_mut().for_each(|e| self.expr(e, env));
-            return vec![VarDecl { of: Some(of), ..v }];
+        if let Some(all) = self.stay(ty, &v, env) {
+            return all;
         }
         if v.array.is_some() {
             // The parser has reported a value that is no list.
@@ -178,10 +177,8 @@ impl<'d> Composition<'d> {
         let own = bounds(of, member);
         if let Some(ty) = self.type_of(member) {
             self.used.insert(&ty.name.text);
-            let single = own.is_empty() && part.dimensions.is_empty();
-            if self.keeps(ty, single, part.values.iter().flatten().next()) {
-                let of = Some(Box::new(ty.name.clone()));
-                return all.push(VarDecl { of, ..leaf(member, part) });
+            if let Some(stay) = self.part_stays(ty, member, &part, &own, env) {
+                return all.extend(stay);
             }
             part.values = self.values(&own, part.values, ty, env);
             part.text = with_slot(&part.text, own.len());
@@ -192,6 +189,25 @@ impl<'d> Composition<'d> {
         if self.takes(1, part.at.0) {
             all.push(leaf(member, part));
         }
+    }
+
+    /// The declarations of a member that stays an instance of a function block, or of an array of such.
+    fn part_stays(
+        &mut self,
+        ty: &'d Composed,
+        member: &VarDecl,
+        part: &Part<'_>,
+        own: &[(Expr, Expr)],
+        env: &Env<'_, 'd>,
+    ) -> Option<Vec<VarDecl>> {
+        // An element of an array of structures is no variable.
+        if !part.dimensions.is_empty() && self.kept.has(ty) {
+            self.kept.refuse(ty);
+            return None;
+        }
+        let array = (!own.is_empty()).then(|| Box::new(Array { dimensions: own.to_vec(), at: part.at }));
+        let plain = Part { dimensions: Vec::new(), ..part.clone() };
+        self.stay(ty, &VarDecl { array, ..leaf(member, plain) }, env)
     }
 
     /// The value of a member in each element of a part. If the member is an array, the values of its elements follow one
@@ -459,7 +475,7 @@ fn number(n: i128, at: Place) -> Expr {
 }
 
 /// A name with the place of so many indexes.
-fn with_slot(text: &str, dimensions: usize) -> String {
+pub(super) fn with_slot(text: &str, dimensions: usize) -> String {
     match dimensions {
         0 => text.to_owned(),
         n => format!("{text}[{}]", ",".repeat(n - 1)),

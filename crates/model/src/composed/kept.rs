@@ -17,12 +17,13 @@ use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::base::{Composition, Env, Segment, Spot};
-use super::paths::member;
+use super::declare::with_slot;
+use super::paths::{filled, member};
 use super::{decomposed, without_locals};
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
     Arg, Body, Composed, Document, Expr, ExprKind, Item, Literal, Name, Path, Problem, Severity, Span, Stmt,
-    StmtKind, UnaryOp, VarDecl, VarKind,
+    StmtKind, UnaryOp, VarDecl, VarKind, codes, say,
 };
 
 /// The function blocks that stay.
@@ -48,17 +49,18 @@ impl Kept {
 }
 
 /// The document without structures, and without function blocks except those that can stay; if `initial`, their instances
-/// can have initial values. Its problems are those of [`decomposed`], which the caller has seen.
-pub fn with_blocks(document: &Document, initial: bool) -> Cow<'_, Document> {
+/// can have initial values. Tells what these do otherwise; all other problems are those of [`decomposed`], which the caller has
+/// seen.
+pub fn with_blocks(document: &Document, initial: bool) -> (Cow<'_, Document>, Vec<Problem>) {
     let mut kept = candidates(document);
     while !kept.is_empty() {
         match staying(document, &Kept { names: kept.clone(), initial, ..Kept::default() }) {
-            Ok(made) => return Cow::Owned(made),
+            Ok((made, told)) => return (Cow::Owned(made), told),
             // Each round refuses at least one more.
             Err(refused) => kept.retain(|name| !refused.contains(name)),
         }
     }
-    decomposed(document).0
+    (decomposed(document).0, Vec::new())
 }
 
 /// A function block as a document: its members and in-outs are the variables, and its body stands before the charts.
@@ -210,13 +212,13 @@ impl Visitor for Constants<'_, '_> {
 /// # Errors
 ///
 /// Those of them that cannot.
-fn staying(document: &Document, kept: &Kept) -> Result<Document, BTreeSet<Box<str>>> {
+fn staying(document: &Document, kept: &Kept) -> Result<(Document, Vec<Problem>), BTreeSet<Box<str>>> {
     let mut main = Plain::of(document, kept);
     if main.wrong {
         return Err(kept.names.clone());
     }
     let known = Known::of(document);
-    let mut units = Units { document, kept, known, made: Vec::new(), seen: BTreeSet::new() };
+    let mut units = Units { document, kept, known, made: Vec::new(), seen: BTreeSet::new(), told: main.told };
     let mut refused = std::mem::take(&mut main.refused);
     main.used.iter().for_each(|name| units.add(name, &mut refused));
     if !refused.is_empty() {
@@ -225,7 +227,7 @@ fn staying(document: &Document, kept: &Kept) -> Result<Document, BTreeSet<Box<st
     let mut items: Vec<Item> = main.document.items;
     let first = items.iter().position(|i| matches!(i, Item::Var(_) | Item::Chart(_))).unwrap_or(items.len());
     items.splice(first..first, units.made.into_iter().map(Item::Composed));
-    Ok(Document { items, notes: main.document.notes })
+    Ok((Document { items, notes: main.document.notes }, units.told))
 }
 
 /// A document in plain form.
@@ -236,6 +238,8 @@ struct Plain {
     refused: BTreeSet<Box<str>>,
     /// True if an error was found.
     wrong: bool,
+    /// What runs otherwise.
+    told: Vec<Problem>,
 }
 
 impl Plain {
@@ -243,14 +247,18 @@ impl Plain {
         let own = without_locals(document);
         let Some(mut made) = Composition::of(&own) else {
             let (used, refused) = (Vec::new(), BTreeSet::new());
-            return Plain { document: own.into_owned(), used, refused, wrong: false };
+            let document = own.into_owned();
+            return Plain { document, used, refused, wrong: false, told: Vec::new() };
         };
         made.kept.clone_from(kept);
         let plain = made.walked(&own);
         let used = composed(document).map(|c| &c.name.text);
         let used = used.filter(|n| made.kept.names.contains(*n) && made.used.contains(&***n));
         let wrong = made.problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
-        Plain { used: used.cloned().collect(), document: plain, refused: made.kept.refused, wrong }
+        let used = used.cloned().collect();
+        let mut told = made.problems;
+        told.retain(|p| p.code.id == codes::DIFFERENT.id);
+        Plain { used, document: plain, refused: made.kept.refused, wrong, told }
     }
 }
 
@@ -261,6 +269,7 @@ struct Units<'d> {
     known: Known<'d>,
     made: Vec<Composed>,
     seen: BTreeSet<Box<str>>,
+    told: Vec<Problem>,
 }
 
 impl Units<'_> {
@@ -271,6 +280,7 @@ impl Units<'_> {
         }
         let unit = Plain::of(&self.unit(of), self.kept);
         refused.extend(unit.refused);
+        self.told.extend(unit.told);
         if unit.wrong {
             refused.insert(of.name.text.clone());
             return;
@@ -317,10 +327,10 @@ impl<'d> Composition<'d> {
         decl: &'d VarDecl,
         segment: &Segment,
     ) -> Spot<'d> {
-        let reachable = is_parameter(decl) && !self.kept.in_condition;
-        if !reachable || !is_whole(&spot) || !segment.index.is_empty() {
-            self.kept.refuse(of);
-            spot.within.iter().for_each(|(outer, _)| self.kept.refuse(outer));
+        let reachable = is_parameter(decl) && !self.kept.in_condition && segment.index.is_empty();
+        match self.instance(&spot) {
+            Some(instance) if reachable => spot = instance,
+            _ => self.kept.refuse(of),
         }
         spot.within = Some((of, segment.name.clone()));
         spot.inner |= decl.kind != VarKind::Input;
@@ -340,17 +350,56 @@ impl<'d> Composition<'d> {
         }
     }
 
-    /// True if a variable stays an instance of a function block; `single` is false for an array of such. Otherwise its type
-    /// is taken apart as well.
-    pub(super) fn keeps(&mut self, of: &Composed, single: bool, init: Option<&Expr>) -> bool {
+    /// One instance of a function block that stays; None for an array of such, for an element that an index chooses while
+    /// the chart runs, and for a part of another instance. An element is a variable of its own, `valve[3]`.
+    fn instance(&mut self, spot: &Spot<'d>) -> Option<Spot<'d>> {
+        if let Some((outer, _)) = &spot.within {
+            self.kept.refuse(outer);
+            return None;
+        }
+        let dimensions = spot.decl.array.as_ref().map_or(0, |a| a.dimensions.len());
+        let known = |e: &Expr| e.kind.whole().is_some();
+        if !spot.index.is_empty() || spot.own.len() != dimensions || !spot.own.iter().all(known) {
+            return None;
+        }
+        let text = filled(&with_slot(&spot.text, dimensions), &spot.own);
+        Some(Spot { text, own: Vec::new(), ..spot.clone() })
+    }
+
+    /// The declarations of a variable that stays an instance of a function block, or of an array of such: one for each. None
+    /// if its type is taken apart, as it is then everywhere.
+    pub(super) fn stay(&mut self, of: &'d Composed, v: &VarDecl, env: &Env<'_, 'd>) -> Option<Vec<VarDecl>> {
         if !self.kept.has(of) {
-            return false;
+            return None;
         }
-        let stays = single && init.is_none_or(|e| self.kept.initial && gives_parameters(of, e));
-        if !stays {
+        let initial = self.kept.initial && v.array.is_none();
+        let given = |e: &Expr| initial && gives_parameters(of, e);
+        let dimensions = v.array.as_ref().map_or(&[][..], |a| &a.dimensions);
+        let indexes = self.indexes(dimensions, env);
+        let (Some(indexes), true) = (indexes, v.init.as_ref().is_none_or(given)) else {
             self.kept.refuse(of);
+            return None;
+        };
+        let mut one =
+            VarDecl { array: None, of: Some(Box::new(of.name.clone())), names: Vec::new(), ..v.clone() };
+        one.init.iter_mut().for_each(|e| self.expr(e, env));
+        let mut all = Vec::new();
+        for name in &v.names {
+            let text = with_slot(&name.text, dimensions.len());
+            let named = |index: &Vec<Expr>| Name { text: filled(&text, index).into(), at: name.at };
+            all.extend(indexes.iter().map(|index| VarDecl { names: vec![named(index)], ..one.clone() }));
         }
-        stays
+        Some(all)
+    }
+
+    /// The statements for an index of a call outside of all instances: none, which is another thing than the fault here.
+    pub(super) fn nothing_outside(&mut self, spot: &Spot<'d>) -> Vec<Stmt> {
+        let what = say!(
+            "an index outside of the bounds of `{}` is a fault here, and there nothing is called",
+            spot.text
+        );
+        self.once(Problem::new(&codes::DIFFERENT, spot.at, what));
+        Vec::new()
     }
 
     /// The call of a function block that stays.
@@ -361,11 +410,10 @@ impl<'d> Composition<'d> {
         args: &[Arg],
         env: &Env<'_, 'd>,
     ) -> Option<StmtKind> {
-        if !is_whole(spot) {
+        let Some(instance) = self.instance(spot) else {
             self.kept.refuse(of);
-            spot.within.iter().for_each(|(outer, _)| self.kept.refuse(outer));
             return None;
-        }
+        };
         let mut made = Vec::new();
         for (n, arg) in args.iter().enumerate() {
             let (name, inout) = self.name_of_argument(of, n, arg)?;
@@ -379,14 +427,9 @@ impl<'d> Composition<'d> {
             let name = Name { text: name.text.clone(), at: value.at };
             made.push(Arg { name: Some(name), output: arg.output, value });
         }
-        let ExprKind::Path(path) = spot.clone().kind() else { return None };
+        let ExprKind::Path(path) = instance.kind() else { return None };
         Some(StmtKind::Call(path, made))
     }
-}
-
-/// True for a whole variable that is no part of another one.
-fn is_whole(spot: &Spot<'_>) -> bool {
-    spot.own.is_empty() && spot.index.is_empty() && spot.within.is_none()
 }
 
 /// True if the initial values of an instance are those of its parameters.
