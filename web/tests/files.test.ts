@@ -176,7 +176,7 @@ test('work that the server could not keep is kept by the browser', async () => {
   await page.keyboard.press('Control+s');
   await dirty(page).waitFor({ state: 'detached' });
   assert.match(onDisk(), /step Kept/);
-  await page.waitForFunction(() => !Object.keys(localStorage).some((key) => key.startsWith('g7-draft')));
+  await page.waitForFunction(() => !Object.keys(localStorage).some((key) => key.startsWith('g7-work')));
   await page.context().close();
 });
 

@@ -1,4 +1,5 @@
-//! The lock of a file that one controller alone writes: its retained values, its history, its events.
+//! The lock of a file that one controller alone writes: its retained values, its history, its events. A server
+//! shows by such a lock that it is there.
 //!
 //! Two controllers would overwrite each other's values without noticing it. The lock is one of the system on a file
 //! beside the file, so it ends with the process, however that ends; the empty file stays.
@@ -36,7 +37,14 @@ pub(crate) fn claim(path: &Path) -> Result<Sole, Failure> {
     }
 }
 
-fn beside(path: &Path) -> PathBuf {
+/// True as long as someone has a file for itself.
+pub(crate) fn is_taken(path: &Path) -> bool {
+    let lock = File::open(beside(path));
+    lock.is_ok_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)))
+}
+
+/// Where the lock of a file stands.
+pub(crate) fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
     name.push(".lock");
     path.with_file_name(name)
@@ -52,7 +60,9 @@ mod tests {
         let first = claim(&path).expect("nobody has it");
         let second = claim(&path).expect_err("the first has it");
         assert!(second.to_string().contains("another controller uses it"), "{second}");
+        assert!(is_taken(&path));
         drop(first);
+        assert!(!is_taken(&path));
         claim(&path).expect("it is free again");
         std::fs::remove_file(beside(&path)).expect("it was made");
     }

@@ -37,10 +37,9 @@ export function handOut(name: string, content: BlobPart, type: string): void {
   setTimeout(() => URL.revokeObjectURL(link.href), 10_000);
 }
 
-/** Closes a file; a file with unsaved changes asks first. A new file that was never changed has
- * none. */
+/** Closes a file; one that has something to lose asks first. */
 export function close(file: OpenFile): void {
-  if (file.changed && (file.saved !== null || file.look.can_undo)) {
+  if (file.loses) {
     shell.closing = file;
     shell.dialog = 'close';
   } else void shell.try(() => files.close(file));

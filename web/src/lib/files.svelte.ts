@@ -1,7 +1,7 @@
 // The open files. The text is kept here and in the worker. Changes typed here and changes made
 // there while an answer is on its way are rebased on each other.
 import { ChangeSet, type Text } from '@codemirror/state';
-import { local } from './local';
+import { drafts } from './drafts.svelte';
 import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
 import type { Edited, Gesture, Look, Shelved, Splice } from './protocol';
@@ -55,6 +55,8 @@ export class OpenFile {
   /** The present text on the disk, if it is neither ours nor the one that was read. */
   outside: { text: string; hash: string } | null = $state.raw(null);
   readonly changed: boolean = $derived(this.text !== this.saved);
+  /** Its text is unsaved work of an earlier time. */
+  recovered = $state(false);
 
   #listeners = new Set<Listener>();
   /** Typed changes that are not sent yet; each is relative to the text after those before it. */
@@ -67,6 +69,11 @@ export class OpenFile {
     this.name = look.file;
     this.look = look;
     this.text = text;
+  }
+
+  /** True if closing loses something. A new file that was never changed has nothing to lose. */
+  get loses(): boolean {
+    return this.changed && (this.saved !== null || this.look.can_undo || this.recovered);
   }
 
   /** Calls a listener after every change of the text. */
@@ -272,16 +279,16 @@ class Files {
     file.tag = await server.write(file.name, text, file.tag);
     file.saved = text;
     file.outside = null;
-    void server.dropDraft(file.name).catch(() => undefined);
+    // Text typed meanwhile still needs its copy.
+    if (!file.changed) void drafts.saved(file.name);
   }
 
   async close(file: OpenFile): Promise<void> {
     const at = this.list.indexOf(file);
     this.list = this.list.filter((f) => f !== file);
     if (this.current === file) this.current = this.list[Math.min(at, this.list.length - 1)] ?? null;
-    // A file that is closed on purpose needs no copy.
-    local.put(file.name, null);
-    if (server.writes) void server.dropDraft(file.name).catch(() => undefined);
+    if (file.loses) await drafts.keep(file.name, { text: file.text, base: file.tag ?? '' }, 'closed');
+    else if (file.changed) await drafts.saved(file.name);
     await page.call({ do: 'close', file: file.name });
     this.usedChanged(file.name);
   }

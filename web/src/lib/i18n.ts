@@ -10,11 +10,12 @@ import { shell } from './words/shell';
 import { start } from './words/start';
 import { text } from './words/text';
 import { wiring } from './words/wiring';
+import { work } from './words/work';
 import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...out, ...operator, ...panels, ...prove, ...run, ...start, ...text, ...wiring } as const;
+const table = { ...access, ...shell, ...canvas, ...out, ...operator, ...panels, ...prove, ...run, ...start, ...text, ...wiring, ...work } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

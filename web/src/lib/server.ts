@@ -1,6 +1,8 @@
 // Files and shared runs of `g7 serve`. Without a server (in the static playground) the examples
 // come from one file beside the page, and nothing is written.
 import type { Wishes } from '../operator/told';
+import type { Draft, DraftRow, End } from './drafts.svelte';
+import { here } from './here';
 import { opened, Refused, type Door, type Message, type RunName } from './page';
 import type { Answers, Shelved, Started } from './protocol';
 import { prefs } from './prefs.svelte';
@@ -137,18 +139,37 @@ class Server implements Door {
     return tag(answer);
   }
 
-  async keepDraft(path: string, text: string): Promise<void> {
-    await this.#ok(await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'PUT', body: text }));
+  /** Keeps the copy of this window. */
+  async keepDraft(path: string, { text, base }: Omit<Draft, 'path'>, end: End): Promise<void> {
+    const from: Record<string, string> = { path, end };
+    if (base !== null) from.base = base;
+    await this.#ok(await this.#fetch(this.#draft('', from), { method: 'PUT', body: text }));
   }
 
-  async drafts(): Promise<{ path: string; text: string }[]> {
+  async drafts(): Promise<DraftRow[]> {
     if (!this.info) return [];
-    const answer = await this.#fetch('api/drafts');
-    return answer.ok ? ((await answer.json()) as { drafts: { path: string; text: string }[] }).drafts : [];
+    const { drafts } = await this.ask<{ drafts: Omit<DraftRow, 'kept'>[] }>(this.#draft('s'));
+    return drafts.map((row) => ({ ...row, kept: 'server' }));
   }
 
-  async dropDraft(path: string): Promise<void> {
-    await this.#fetch(`api/draft?path=${encodeURIComponent(path)}`, { method: 'DELETE' });
+  draft(id: string): Promise<Draft> {
+    return this.ask(this.#draft('', { id }));
+  }
+
+  async takeDraft(id: string): Promise<Draft> {
+    return (await (await this.#ok(await this.#post(this.#draft('/take', { id }), {}))).json()) as Draft;
+  }
+
+  async savedDraft(path: string): Promise<void> {
+    await this.#ok(await this.#post(this.#draft('/saved', { path }), {}));
+  }
+
+  async dropDraft(id: string): Promise<void> {
+    await this.#ok(await this.#fetch(this.#draft('', { id }), { method: 'DELETE' }));
+  }
+
+  #draft(what: string, asks: Record<string, string> = {}): string {
+    return `api/draft${what}?${new URLSearchParams({ window: here, ...asks }).toString()}`;
   }
 
   /** Renames, deletes or creates a file. */
@@ -215,6 +236,7 @@ class Server implements Door {
       const address = new URL('api/live', document.baseURI);
       address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
       address.searchParams.set('token', this.#token);
+      address.searchParams.set('window', here);
       const socket = new WebSocket(address);
       socket.onopen = () => {
         resolve(socket);

@@ -1,5 +1,4 @@
-//! Files over HTTP: listing, reading, writing (with the known hash in `If-Match`), and copies of
-//! unsaved work.
+//! Files over HTTP: listing, reading, writing (with the known hash in `If-Match`).
 
 use std::sync::Arc;
 use std::time::Duration;
@@ -43,8 +42,6 @@ pub(super) fn routes() -> Router<Shared> {
         .route("/api/new", post(new))
         .route("/api/rename", post(rename))
         .route("/api/delete", post(delete))
-        .route("/api/draft", axum::routing::put(keep).delete(drop_draft))
-        .route("/api/drafts", get(drafts))
 }
 
 #[derive(Deserialize)]
@@ -155,30 +152,6 @@ async fn delete(State(shared): State<Shared>, Extension(who): Extension<Who>, re
     Ok(StatusCode::NO_CONTENT.into_response())
 }
 
-async fn keep(State(shared): State<Shared>, Query(at): Query<At>, request: Request) -> Answer {
-    if shared.folder.is_read_only() {
-        return Err(Refusal::read_only());
-    }
-    let bytes = body(request).await?;
-    let text =
-        String::from_utf8(bytes).map_err(|_| Refusal::bad(say!("an unsaved copy must be UTF-8 text")))?;
-    aside(move || shared.drafts.keep(&at.path, text)).await?;
-    Ok(StatusCode::NO_CONTENT.into_response())
-}
-
-async fn drafts(State(shared): State<Shared>) -> Answer {
-    let drafts = aside(move || Ok(shared.drafts.list())).await?;
-    Ok(Json(json!({ "drafts": drafts })).into_response())
-}
-
-async fn drop_draft(State(shared): State<Shared>, Query(at): Query<At>) -> Answer {
-    if shared.folder.is_read_only() {
-        return Err(Refusal::read_only());
-    }
-    aside(move || shared.drafts.drop(&at.path)).await?;
-    Ok(StatusCode::NO_CONTENT.into_response())
-}
-
 /// The bytes of a file, declared as plain text so that no browser executes them.
 fn text(status: StatusCode, bytes: Vec<u8>) -> Response {
     let head = [
@@ -228,7 +201,7 @@ pub(super) async fn small_json<T: for<'a> Deserialize<'a>>(request: Request) -> 
 }
 
 /// Reads a body of limited size in a limited time.
-async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
+pub(super) async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
     let too_large = || {
         let text = say!("this is larger than {} MB: nothing was written", LARGEST >> 20);
         Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, text)

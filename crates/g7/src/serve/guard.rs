@@ -81,7 +81,8 @@ fn needed(method: &Method, path: &str) -> Option<Role> {
         (&Method::GET, "/api/log") => Role::Operator,
         (&Method::POST, "/api/wiring/look") => Role::Viewer,
         (&Method::POST, "/api/wiring/edit" | "/api/wiring/live") => Role::Engineer,
-        (_, "/api/file" | "/api/new" | "/api/rename" | "/api/delete" | "/api/draft") => Role::Engineer,
+        (_, "/api/file" | "/api/new" | "/api/rename" | "/api/delete") => Role::Engineer,
+        (_, "/api/draft" | "/api/draft/take" | "/api/draft/saved") => Role::Engineer,
         _ => Role::Admin,
     })
 }
@@ -318,6 +319,9 @@ mod tests {
             (Method::GET, "/api/login", None),
             (Method::GET, "/api/file", Some(Role::Viewer)),
             (Method::PUT, "/api/file", Some(Role::Engineer)),
+            (Method::GET, "/api/drafts", Some(Role::Viewer)),
+            (Method::GET, "/api/draft", Some(Role::Engineer)),
+            (Method::POST, "/api/draft/take", Some(Role::Engineer)),
             (Method::GET, "/api/log", Some(Role::Operator)),
             (Method::GET, "/api/history/export", Some(Role::Viewer)),
             (Method::POST, "/api/wiring/look", Some(Role::Viewer)),

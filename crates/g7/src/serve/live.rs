@@ -7,8 +7,8 @@
 use std::sync::Arc;
 
 use axum::Extension;
-use axum::extract::State;
 use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
+use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use g7_model::say;
@@ -20,6 +20,7 @@ use tokio::time::{Instant, MissedTickBehavior, interval, timeout};
 
 use super::api;
 use super::aside::aside;
+use super::drafts::routes;
 use super::listen::Peer;
 use super::outbox::{Next, Outbox};
 use super::places::Place;
@@ -51,9 +52,17 @@ struct Head {
     speed: Option<f64>,
 }
 
+/// The name that a client has for its window.
+#[derive(Deserialize)]
+pub(super) struct Asks {
+    #[serde(default)]
+    window: String,
+}
+
 /// Opens the WebSocket of a client if there is room for it.
 pub(super) async fn live(
     State(shared): State<Shared>,
+    Query(asks): Query<Asks>,
     Extension(who): Extension<Who>,
     Extension(Peer(from)): Extension<Peer>,
     upgrade: WebSocketUpgrade,
@@ -64,6 +73,8 @@ pub(super) async fn live(
             say!("all {clients} places are taken, or the {from_one} of this address: close a page somewhere");
         return Refusal::new(StatusCode::TOO_MANY_REQUESTS, text).into_response();
     };
+    // A client without a name has no unsaved work.
+    let owner = routes::owner(&who, &asks.window).ok().map(|owner| shared.drafts.owners.enter(owner));
     let most = shared.limits.message;
     upgrade
         .max_message_size(most)
@@ -71,7 +82,10 @@ pub(super) async fn live(
         // The defaults would take a quarter of a megabyte for each client.
         .read_buffer_size(8 << 10)
         .write_buffer_size(0)
-        .on_upgrade(move |socket| attend(socket, shared, who, seat))
+        .on_upgrade(move |socket| async move {
+            attend(socket, shared, who, seat).await;
+            drop(owner);
+        })
 }
 
 /// Serves a client until it leaves or is disconnected.

@@ -148,6 +148,7 @@ fn shared(
 fn app(shared: Shared, guard: Guard) -> Router {
     Router::new()
         .merge(api::routes())
+        .merge(drafts::routes::routes())
         .merge(entry::routes())
         .merge(history::routes())
         .merge(wiring::routes())
@@ -158,7 +159,7 @@ fn app(shared: Shared, guard: Guard) -> Router {
         .layer(axum::middleware::from_fn(refusal::translate))
 }
 
-/// Notifies every client of changes in the folder.
+/// Notifies every client of changes in the folder and of unsaved work.
 async fn tell_changes(shared: Shared) {
     let mut tick = tokio::time::interval(LOOK);
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
@@ -169,11 +170,16 @@ async fn tell_changes(shared: Shared) {
         }
         let of = Arc::clone(&shared);
         let changes = tokio::task::spawn_blocking(move || of.watch.changes()).await.unwrap_or_default();
+        let drafts = shared.drafts.have_changed();
         // The clients are listed after the search, since `changes` returns each change only once:
         // a client that connected during the search would otherwise never hear of it.
         let clients = shared.clients.all();
         for change in changes {
             let text = runs::letter(&serde_json::json!({ "changed": change }));
+            clients.iter().for_each(|c| c.put(text.clone()));
+        }
+        if drafts {
+            let text = runs::letter(&serde_json::json!({ "drafts": true }));
             clients.iter().for_each(|c| c.put(text.clone()));
         }
     }

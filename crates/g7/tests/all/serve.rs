@@ -161,14 +161,17 @@ fn what_cannot_be_served_is_said_in_one_line() {
 fn unsaved_work_is_there_again_when_the_server_was_killed() {
     let folder = Folder::with(PINGPONG);
     let served = Served::new(&folder, &["--port", "0"]);
-    assert_eq!(served.ask("PUT /api/draft?path=chart.g7", "half a thought").0, 204);
+    assert_eq!(served.ask("PUT /api/draft?window=a&end=open&path=chart.g7", "half a thought").0, 204);
     drop(served);
     let again = Served::new(&folder, &["--port", "0"]);
-    let (status, drafts) = again.ask("GET /api/drafts", "");
+    let (status, drafts) = again.ask("GET /api/drafts?window=b", "");
     assert_eq!(status, 200);
-    assert_eq!(drafts, r#"{"drafts":[{"path":"chart.g7","text":"half a thought"}]}"#);
-    assert_eq!(again.ask("DELETE /api/draft?path=chart.g7", "").0, 204);
-    assert_eq!(again.ask("GET /api/drafts", "").1, r#"{"drafts":[]}"#);
+    assert!(drafts.contains(r#""path":"chart.g7""#) && drafts.contains(r#""holder":"gone""#), "{drafts}");
+    let id = drafts.split("\"id\":\"").nth(1).and_then(|d| d.split('"').next()).expect("its name");
+    let taken = again.ask(&format!("POST /api/draft/take?window=b&id={id}"), "");
+    assert_eq!(taken, (200, r#"{"path":"chart.g7","text":"half a thought","base":null}"#.to_owned()));
+    assert_eq!(again.ask("POST /api/draft/saved?window=b&path=chart.g7", "").0, 204);
+    assert_eq!(again.ask("GET /api/drafts?window=b", "").1, r#"{"drafts":[]}"#);
     assert_eq!(folder.read("chart.g7"), PINGPONG);
 }
 

@@ -112,7 +112,7 @@ async fn names_that_lead_out_of_the_folder_are_refused() {
         assert!(!reply.text().is_empty() && reply.text() != "secret", "{name}");
         server.ask("PUT", &at, &[("If-Match", "*")], "x").await.is(400);
         server.ask("PUT", &at, &[("If-None-Match", "*")], "x").await.is(400);
-        server.ask("PUT", &format!("/api/draft?path={name}"), &[], "x").await.is(400);
+        server.ask("PUT", &format!("/api/draft?window=a&end=open&path={name}"), &[], "x").await.is(400);
     }
     let out = json!({ "from": "chart.g7", "to": "../taken.g7" }).to_string();
     server.ask("POST", "/api/rename", &[], &out).await.is(400);
@@ -173,40 +173,13 @@ async fn read_only_writes_nothing() {
     ] {
         server.ask("POST", &format!("/api/{what}"), &[], &body.to_string()).await.is(403);
     }
-    server.ask("PUT", "/api/draft?path=chart.g7", &[], "mine").await.is(403);
-    server.ask("DELETE", "/api/draft?path=chart.g7", &[], "").await.is(403);
+    server.ask("PUT", "/api/draft?window=a&end=open&path=chart.g7", &[], "mine").await.is(403);
+    server.ask("POST", "/api/draft/saved?window=a&path=chart.g7", &[], "").await.is(403);
+    server.ask("DELETE", "/api/draft?window=a&id=0-0", &[], "").await.is(403);
     assert_eq!(server.on_disk("chart.g7"), CHART);
     assert_eq!(fs::read_dir(server.path("")).expect("the folder").count(), 1);
     // Charts can still be run, because a run writes nothing.
     assert_eq!(server.live().await.start("a").await["run"], "a");
-}
-
-#[tokio::test]
-async fn unsaved_copies_outlive_the_server() {
-    let mut server = Server::new().await;
-    let text = "chart G {\n  // half a thought: é\u{1F600}";
-    server.ask("PUT", "/api/draft?path=chart.g7", &[], "first").await.is(204);
-    server.ask("PUT", "/api/draft?path=chart.g7", &[], text).await.is(204);
-    server.ask("PUT", "/api/draft?path=not-there-yet.g7", &[], "new").await.is(204);
-    assert_eq!(fs::read_dir(server.path("")).expect("the folder").count(), 1, "none beside the sources");
-    let drafts = server.get("/api/drafts").await.json();
-    assert_eq!(drafts["drafts"][0], json!({ "path": "chart.g7", "text": text }));
-    // After a restart for the same folder; the remains of an interrupted write are not a copy.
-    server.task.abort();
-    let kept = fs::read_dir(server.root.join("state/g7/drafts")).expect("copies").next();
-    let kept = kept.expect("a folder").expect("a folder").path();
-    fs::write(kept.join(".x.json.1.new"), "{\"pa").expect("a torn file");
-    fs::write(kept.join("torn.json"), "{\"pa").expect("a torn file");
-    let args = args_of(&server.root.join("charts"));
-    let rules = Rules::of(&args, None, &crate::audit::Audit::default(), None).expect("they fit");
-    let again = shared(&args, Limits::default(), Some(&server.root.join("state")), None, &rules)
-        .expect("the same folder");
-    let found: Vec<String> = again.drafts.list().into_iter().map(|d| d.path).collect();
-    assert_eq!(found, ["chart.g7", "not-there-yet.g7"]);
-    again.drafts.drop("chart.g7").expect("dropped");
-    again.drafts.drop("chart.g7").expect("twice is once");
-    assert_eq!(again.drafts.list().len(), 1);
-    server.token.clear();
 }
 
 #[tokio::test]

@@ -3,6 +3,7 @@
 
 mod assets;
 mod crowd;
+mod drafts;
 mod files;
 mod guard;
 mod runs;
