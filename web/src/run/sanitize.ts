@@ -1,5 +1,6 @@
 // Filters a picture from a file before it becomes part of the page: no scripts, no handlers, no
 // external references. Unknown elements are removed.
+import { inside } from './css';
 
 const SVG = 'http://www.w3.org/2000/svg';
 const XLINK = 'http://www.w3.org/1999/xlink';
@@ -10,13 +11,8 @@ const ELEMENTS = new Set(
   feFlood feBlend feColorMatrix feComposite feMerge feMergeNode feDropShadow`.split(/\s+/),
 );
 
-/** True if a text refers to nothing but parts of the picture itself. */
-function inside(text: string): boolean {
-  const plain = text.replace(/\/\*[\s\S]*?\*\//g, '').replace(/\\/g, '');
-  if (/@import|@font-face|expression\s*\(|javascript:|image(-set)?\s*\(|src\s*\(/i.test(plain)) return false;
-  for (const found of plain.matchAll(/url\s*\(\s*['"]?\s*([^)]*)/gi)) if (!found[1]?.startsWith('#')) return false;
-  return true;
-}
+/** Attributes that no browser reads as CSS. */
+const PLAIN = /^(data-|aria-|id$|class$|role$|lang$|tabindex$)/;
 
 function clean(from: Element): SVGElement | null {
   if (from.namespaceURI !== SVG || !ELEMENTS.has(from.localName)) return null;
@@ -28,7 +24,7 @@ function clean(from: Element): SVGElement | null {
       if (value.startsWith('#') && (namespaceURI === null || namespaceURI === XLINK)) made.setAttribute('href', value);
       continue;
     }
-    if (namespaceURI !== null || !inside(value)) continue;
+    if (namespaceURI !== null || (!PLAIN.test(name) && !inside(value))) continue;
     made.setAttribute(name, value);
   }
   for (const child of from.childNodes) {
