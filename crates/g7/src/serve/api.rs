@@ -1,9 +1,7 @@
 //! Files over HTTP: listing, reading, writing (with the known hash in `If-Match`).
 
 use std::sync::Arc;
-use std::time::Duration;
 
-use axum::body::Body;
 use axum::extract::{Query, Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::{IntoResponse, Response};
@@ -12,26 +10,16 @@ use axum::{Extension, Json, Router};
 use g7_model::{Said, say};
 use serde::Deserialize;
 use serde_json::{Value, json};
-use tokio::sync::Semaphore;
 
 use super::aside::aside;
+use super::bodies::{body, json_body};
 use super::fingerprint;
-use super::folder::{LARGEST, Wanted, Written};
+use super::folder::{Wanted, Written};
 use super::refusal::Refusal;
 use super::shared::{Inner, Shared};
-use crate::failure::raw;
 use crate::who::Who;
 
-/// Greatest size of a small body, and longest time for it.
-const SMALL: usize = 8 << 10;
-const SMALL_SLOWEST: Duration = Duration::from_secs(5);
-
 pub(super) type Answer = Result<Response, Refusal>;
-
-/// Greatest number of bodies read at the same time; this bounds the memory.
-static BODIES: Semaphore = Semaphore::const_new(4);
-/// Longest time that a body may take.
-const SLOWEST: Duration = Duration::from_secs(30);
 
 /// The addresses below `/api`.
 pub(super) fn routes() -> Router<Shared> {
@@ -179,47 +167,6 @@ fn wanted(headers: &HeaderMap) -> Result<Wanted, Refusal> {
                 "a file is written with `If-Match` and the hash it was read with, or `If-None-Match: *` for a new one"
             ),
         )),
-    }
-}
-
-pub(super) async fn json_body<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
-    let bytes = body(request).await?;
-    serde_json::from_slice(&bytes).map_err(|e| Refusal::bad(say!("this request means nothing: {}", raw(e))))
-}
-
-/// Reads a small body, also of someone who is not known yet: whoever is slow takes nobody's place.
-pub(super) async fn small_json<T: for<'a> Deserialize<'a>>(request: Request) -> Result<T, Refusal> {
-    let bytes = axum::body::to_bytes(Body::new(request.into_body()), SMALL);
-    let bytes = match tokio::time::timeout(SMALL_SLOWEST, bytes).await {
-        Ok(Ok(bytes)) => bytes,
-        Ok(Err(_)) => return Err(Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, say!("this is too large"))),
-        Err(_) => {
-            return Err(Refusal::new(StatusCode::REQUEST_TIMEOUT, say!("this took too long to arrive")));
-        }
-    };
-    serde_json::from_slice(&bytes).map_err(|_| Refusal::bad(say!("this request means nothing")))
-}
-
-/// Reads a body of limited size in a limited time.
-pub(super) async fn body(request: Request) -> Result<Vec<u8>, Refusal> {
-    let too_large = || {
-        let text = say!("this is larger than {} MB: nothing was written", LARGEST >> 20);
-        Refusal::new(StatusCode::PAYLOAD_TOO_LARGE, text)
-    };
-    let length =
-        request.headers().get(header::CONTENT_LENGTH).and_then(|v| v.to_str().ok()?.parse::<u64>().ok());
-    if length.is_some_and(|l| l > LARGEST as u64) {
-        return Err(too_large());
-    }
-    let late = || {
-        Refusal::new(StatusCode::REQUEST_TIMEOUT, say!("this took too long to arrive: nothing was written"))
-    };
-    let _place = BODIES.acquire().await.map_err(|_| late())?;
-    let bytes = axum::body::to_bytes(Body::new(request.into_body()), LARGEST);
-    match tokio::time::timeout(SLOWEST, bytes).await {
-        Ok(Ok(bytes)) => Ok(bytes.to_vec()),
-        Ok(Err(_)) => Err(too_large()),
-        Err(_) => Err(late()),
     }
 }
 

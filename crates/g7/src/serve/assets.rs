@@ -5,18 +5,24 @@
 //! the file as it was, unpacked from the gzip.
 
 use std::borrow::Cow;
+use std::convert::Infallible;
 use std::io::Read as _;
 use std::path::Path;
+use std::pin::Pin;
+use std::task::{Context, Poll};
 
+use axum::body::{Body, Bytes, HttpBody};
 use axum::extract::State;
 use axum::http::{HeaderMap, HeaderValue, StatusCode, Uri, header};
 use axum::response::{IntoResponse, Response};
 use flate2::read::GzDecoder;
+use hyper::body::{Frame, SizeHint};
 use rust_embed::RustEmbed;
 
 use super::encoding::{Encoding, accepted};
 use super::fingerprint;
 use super::shared::Shared;
+use super::shelf::Shelf;
 
 /// The built page; empty if the page was not built before the binary.
 #[derive(RustEmbed)]
@@ -33,6 +39,36 @@ const NONE: &str = "<!doctype html><html lang=\"en\"><meta charset=\"utf-8\"><ti
     <p>This <code>g7</code> was built without the editor. In the folder of its sources:</p>\
     <p><code>make web</code> builds the page; then build <code>g7</code> again, \
     or <code>make run</code> does both.</p>";
+
+/// Most bytes that are handed to a connection at once. It holds them until they are sent.
+const PIECE: usize = 64 << 10;
+
+/// The files that are being sent, once for all who read them.
+static SENT: Shelf = Shelf::new();
+
+/// A file, in pieces.
+struct Pieces(Bytes);
+
+impl HttpBody for Pieces {
+    type Data = Bytes;
+    type Error = Infallible;
+
+    fn poll_frame(
+        mut self: Pin<&mut Self>,
+        _: &mut Context<'_>,
+    ) -> Poll<Option<Result<Frame<Bytes>, Infallible>>> {
+        let length = self.0.len().min(PIECE);
+        Poll::Ready((length > 0).then(|| Ok(Frame::data(self.0.split_to(length)))))
+    }
+
+    fn is_end_stream(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    fn size_hint(&self) -> SizeHint {
+        SizeHint::with_exact(self.0.len() as u64)
+    }
+}
 
 /// Answers with a file of the page.
 pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: HeaderMap) -> Response {
@@ -70,7 +106,7 @@ pub(super) async fn asset(State(shared): State<Shared>, uri: Uri, headers: Heade
     if known(&headers, &tag) {
         return (StatusCode::NOT_MODIFIED, head).into_response();
     }
-    let mut response = (head, bytes.into_owned()).into_response();
+    let mut response = (head, Body::new(Pieces(bytes))).into_response();
     if encoding != Encoding::Identity {
         response.headers_mut().insert(header::CONTENT_ENCODING, HeaderValue::from_static(encoding.name()));
     }
@@ -87,10 +123,15 @@ fn known(headers: &HeaderMap, tag: &str) -> bool {
 }
 
 /// A file of the binary.
-fn built(path: &str, encoding: Encoding) -> Option<Cow<'static, [u8]>> {
-    match encoding {
-        Encoding::Identity => unpacked(&Built::get(&format!("{path}.gz"))?.data).map(Cow::Owned),
-        packed => Built::get(&format!("{path}{}", packed.ending())).map(|file| file.data),
+fn built(path: &str, encoding: Encoding) -> Option<Bytes> {
+    let ending = if encoding == Encoding::Identity { ".gz" } else { encoding.ending() };
+    let packed = Built::get(&format!("{path}{ending}"))?.data;
+    if encoding == Encoding::Identity {
+        return SENT.of(&fingerprint::hash(&packed), || unpacked(&packed));
+    }
+    match packed {
+        Cow::Borrowed(bytes) => Some(Bytes::from_static(bytes)),
+        Cow::Owned(bytes) => SENT.of(&fingerprint::hash(&bytes), || Some(bytes)),
     }
 }
 
@@ -100,12 +141,13 @@ fn unpacked(bytes: &[u8]) -> Option<Vec<u8>> {
     Some(plain)
 }
 
-fn on_disk(folder: &Path, path: &str, encoding: Encoding) -> Option<Cow<'static, [u8]>> {
+fn on_disk(folder: &Path, path: &str, encoding: Encoding) -> Option<Bytes> {
     let path = folder.join(format!("{path}{}", encoding.ending())).canonicalize().ok()?;
     if !path.starts_with(folder) || !path.is_file() {
         return None;
     }
-    std::fs::read(path).ok().map(Cow::Owned)
+    let bytes = std::fs::read(path).ok()?;
+    SENT.of(&fingerprint::hash(&bytes), || Some(bytes))
 }
 
 fn kind(path: &str) -> &'static str {

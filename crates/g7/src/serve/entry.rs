@@ -26,8 +26,8 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 
 use super::access::{Access, refusal};
-use super::api::small_json;
 use super::aside::aside;
+use super::bodies::small_json;
 use super::guard::{COOKIE, peer};
 use super::refusal::Refusal;
 use super::shared::Shared;

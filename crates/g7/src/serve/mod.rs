@@ -26,6 +26,7 @@ mod api;
 mod args;
 mod aside;
 mod assets;
+mod bodies;
 mod browser;
 mod desk;
 mod drafts;
@@ -46,6 +47,7 @@ mod registry;
 mod rules;
 mod runs;
 mod shared;
+mod shelf;
 mod system;
 #[cfg(test)]
 mod tests;

@@ -238,3 +238,25 @@ fn floods_cost_bounded_memory_and_the_scan_goes_on() {
     assert!(peak < 150_000, "{peak} kB for a server that was sent 300 MB");
     assert_eq!(folder.read("chart.g7"), PINGPONG);
 }
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_file_that_many_ask_for_and_nobody_reads_is_there_once() {
+    let folder = Folder::with(PINGPONG);
+    let large = 16 << 20;
+    folder.write("page/g7.wasm", "x".repeat(large));
+    let served = Served::new(&folder, &["--port", "0", "--page-dir", "page"]);
+    let held: Vec<TcpStream> = (0..60)
+        .map(|_| {
+            let mut stream = served.connect();
+            let head = format!("GET /g7.wasm HTTP/1.1\r\nHost: {}\r\n\r\n", served.host);
+            stream.write_all(head.as_bytes()).expect("sent");
+            let mut begin = [0; 12];
+            stream.read_exact(&mut begin).expect("an answer");
+            assert_eq!(&begin, b"HTTP/1.1 200");
+            stream
+        })
+        .collect();
+    let peak = peak(&served.child);
+    assert!(peak < 200_000, "{peak} kB for {} copies of {large} bytes", held.len());
+}

@@ -14,8 +14,9 @@ use serde::Deserialize;
 use serde_json::json;
 
 use super::{End, Owner};
-use crate::serve::api::{Answer, body};
+use crate::serve::api::Answer;
 use crate::serve::aside::aside;
+use crate::serve::bodies::body;
 use crate::serve::refusal::Refusal;
 use crate::serve::shared::{Inner, Shared};
 use crate::who::Who;

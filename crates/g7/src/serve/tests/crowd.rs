@@ -229,3 +229,103 @@ async fn row_18_a_handler_that_panics_ends_its_own_connection_and_nothing_else()
     task.abort();
     g7_peers::faults::row(18, "the server", count.into(), 0, "one connection ends, all others go on");
 }
+
+/// A server beside one, with other rules for connections. It ends with the test.
+async fn beside(server: &Server, door: listen::Door) -> SocketAddr {
+    let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
+    let bound = listener.local_addr().expect("an address");
+    let rules = Rules::of(&args_of(&server.root.join("charts")), None, &crate::audit::Audit::default(), None);
+    let guard = rules.expect("they fit").guard(Pass::Token(server.token.clone()), bound);
+    tokio::spawn(listen::listen(listener, app(Arc::clone(&server.shared), guard), door));
+    bound
+}
+
+/// Asks for a file without a token.
+async fn ask_for(bound: SocketAddr, path: &str) -> TcpStream {
+    let mut stream = TcpStream::connect(bound).await.expect("a connection");
+    let head = format!("GET {path} HTTP/1.1\r\nHost: {bound}\r\nConnection: close\r\n\r\n");
+    stream.write_all(head.as_bytes()).await.expect("sent");
+    stream
+}
+
+async fn all_of(mut stream: TcpStream) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    tokio::time::timeout(PATIENCE, stream.read_to_end(&mut bytes)).await.expect("an end").ok();
+    bytes
+}
+
+/// More than the system takes off a connection that nobody reads.
+const GIANT: usize = 32 << 20;
+
+#[tokio::test]
+async fn who_reads_nothing_locks_nobody_out() {
+    let server = Server::new().await;
+    fs::write(server.path("g7.wasm"), vec![7; GIANT]).expect("a large file");
+    fs::write(server.path("index.html"), "<p>page").expect("a page");
+    let quiet = Duration::from_millis(300);
+    let bound = beside(&server, listen::Door { from_one: 8, quiet, ..listen::Door::default() }).await;
+    let mut held = Vec::new();
+    for _ in 0..8 {
+        held.push(ask_for(bound, "/g7.wasm").await);
+    }
+    let served = async {
+        while !all_of(ask_for(bound, "/").await).await.ends_with(b"<p>page") {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    // Well before the time in which an answer may stand still.
+    tokio::time::timeout(Duration::from_secs(12), served).await.expect("let in");
+    // Who reads has the whole file, however many hold it.
+    let whole = all_of(ask_for(bound, "/g7.wasm").await).await;
+    let body = whole.windows(4).position(|w| w == b"\r\n\r\n").expect("a head") + 4;
+    assert!(whole.len() - body == GIANT && whole.iter().skip(body).all(|b| *b == 7));
+}
+
+#[tokio::test]
+async fn an_answer_that_nobody_reads_ends() {
+    let server = Server::new().await;
+    fs::write(server.path("g7.wasm"), vec![7; GIANT]).expect("a large file");
+    let stall = Duration::from_millis(400);
+    let bound = beside(&server, listen::Door { stall, ..listen::Door::default() }).await;
+    let stream = ask_for(bound, "/g7.wasm").await;
+    tokio::time::sleep(stall * 5).await;
+    assert!(all_of(stream).await.len() < GIANT, "it was given up");
+}
+
+#[tokio::test]
+async fn slow_uploads_delay_no_save() {
+    let server = Server::new().await;
+    let mut slow = Vec::new();
+    for _ in 0..12 {
+        let mut stream = TcpStream::connect(server.bound).await.expect("a connection");
+        let head = format!(
+            "PUT /api/file?path=slow.g7 HTTP/1.1\r\nHost: {}\r\nAuthorization: Bearer {}\r\n\
+             If-None-Match: *\r\nContent-Length: 8000000\r\n\r\nchart",
+            server.bound, server.token
+        );
+        stream.write_all(head.as_bytes()).await.expect("sent");
+        slow.push(stream);
+    }
+    // All of them are being read.
+    tokio::time::sleep(Duration::from_millis(200)).await;
+    let save = server.ask("PUT", "/api/file?path=chart.g7", &[("If-Match", "*")], "saved");
+    tokio::time::timeout(Duration::from_secs(4), save).await.expect("without a wait").is(204);
+    assert_eq!(server.on_disk("chart.g7"), "saved");
+    // Those who stand still hear so.
+    let first = all_of(slow.remove(0)).await;
+    assert!(first.starts_with(b"HTTP/1.1 408"), "{}", String::from_utf8_lossy(&first));
+    assert!(!server.path("slow.g7").exists());
+}
+
+#[tokio::test]
+async fn a_run_that_is_refused_as_too_large_is_not_there() {
+    let server = Server::new().await;
+    let name = "n".repeat(900);
+    let text = format!("var {name} : ARRAY[1..20000] OF INT\n{CHART}");
+    fs::write(server.path("large.g7"), text).expect("a large chart");
+    let mut page = server.live().await;
+    let start = json!({ "do": "run_start", "run": "a", "file": "large.g7" });
+    let why = page.no(start).await;
+    assert!(why.contains("too much at once"), "{why}");
+    assert_eq!(page.call(json!({ "do": "runs" })).await["runs"], json!([]));
+}

@@ -23,8 +23,9 @@ use serde_json::{Value, json};
 use sight::{Chart, Sight};
 pub(super) use turn::Asker;
 
-use super::api::{Answer, json_body, told};
+use super::api::{Answer, told};
 use super::aside::aside;
+use super::bodies::json_body;
 use super::fingerprint;
 use super::folder::{Wanted, Written};
 use super::refusal::Refusal;
