@@ -254,17 +254,6 @@ pub struct VarDecl {
 }
 
 impl VarDecl {
-    /// True for an instance of a function block of the file, in a document where [`crate::composed::with_blocks`] has left
-    /// no other types of the file.
-    pub fn is_own_instance(&self) -> bool {
-        self.of.is_some() && self.array.is_none()
-    }
-
-    /// True for an instance of a function block, one of the standard or of the file.
-    pub fn is_instance(&self) -> bool {
-        matches!(self.ty, Type::Fb(_)) || self.is_own_instance()
-    }
-
     /// See [`Limits::values`].
     pub fn values(&self) -> &[(Name, Option<Expr>)] {
         self.limits.as_deref().map_or(&[], Limits::values)

@@ -4,19 +4,10 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use g7_model::composed::{as_block, as_document};
-use g7_model::{
-    Arg, Composed, Document, Expr, ExprKind, Item, Literal, Name, Path, Problem, Profile, ProfileName, Span,
-    Stmt, StmtKind, Type, VarDecl,
-};
+use g7_model::{Composed, Document, Expr, ExprKind, Item, Literal, Name, Problem, Type, VarDecl};
 
-use super::bodies::{At, named};
 use super::identifiers::Names;
-use super::lower::{Form, Lower};
-use super::lowered;
-use crate::nodes;
 use crate::report::renamed;
-use crate::scopes::{Ref, VarKey};
 
 /// The new names of the function blocks of a document.
 #[derive(Default)]
@@ -26,16 +17,34 @@ pub(super) struct Blocks {
     changed: Option<Problem>,
 }
 
+/// A function block with its new names.
 #[derive(Default)]
-struct Renamed {
+pub(super) struct Renamed {
     name: String,
     /// The members, by their names in the document, with their types.
     members: HashMap<Box<str>, (String, Type)>,
     inouts: Vec<Box<str>>,
 }
 
+impl Renamed {
+    /// The new name of a member.
+    pub(super) fn member(&self, name: &str) -> Option<&str> {
+        self.members.get(name).map(|(new, _)| new.as_str())
+    }
+
+    /// True for the name of an in-out, as the document has it.
+    pub(super) fn is_inout(&self, name: &str) -> bool {
+        self.inouts.iter().any(|i| **i == *name)
+    }
+
+    /// True for the new name of an in-out.
+    pub(super) fn is_new_inout(&self, name: &str) -> bool {
+        self.inouts.iter().any(|i| self.member(i) == Some(name))
+    }
+}
+
 impl Blocks {
-    /// Gives each function block its name. Those of members follow in [`Blocks::lowered`].
+    /// Gives each function block its name. Those of members follow in [`Blocks::enter`].
     pub(super) fn of(document: &Document) -> Blocks {
         let mut names = Names::new(0);
         let mut made = Blocks::default();
@@ -57,6 +66,26 @@ impl Blocks {
         Name::new(self.types.get(&of.text).map_or(&*of.text, |t| t.name.as_str()), of.at.0)
     }
 
+    /// A function block, by its name in the document.
+    pub(super) fn get(&self, name: &str) -> Option<&Renamed> {
+        self.types.get(name)
+    }
+
+    /// Takes the new names of the members of a function block.
+    pub(super) fn enter(&mut self, c: &Composed, names: &Names) -> Option<&Renamed> {
+        let entry = self.types.get_mut(&c.name.text)?;
+        for decl in c.members.iter().chain(&c.inouts) {
+            let new = |n: &Name| Some((n.text.clone(), (names.var(None, &n.text)?.to_owned(), decl.ty)));
+            entry.members.extend(decl.names.iter().filter_map(new));
+        }
+        Some(entry)
+    }
+
+    /// The problem of the names that had to be changed.
+    pub(super) fn take_changed(&mut self) -> Option<Problem> {
+        self.changed.take()
+    }
+
     /// Puts the new names of its type and of the parameters that have initial values into the declaration of an instance.
     pub(super) fn instance(&self, decl: &mut VarDecl) {
         let Some(of) = &mut decl.of else { return };
@@ -70,37 +99,11 @@ impl Blocks {
             typed(&mut field.value, *ty);
         }
     }
-
-    /// Rewrites all function blocks. Each stands behind those that it has instances of, so that their names are known.
-    pub(super) fn lowered(&mut self, document: &Document, form: Form) -> (Vec<Composed>, Vec<Problem>) {
-        let (mut all, mut problems) = (Vec::new(), Vec::from_iter(self.changed.take()));
-        for c in composed(document) {
-            let (made, mut own, names) = lowered(&unit(document, c), form, self);
-            problems.append(&mut own);
-            let name = self.named(&c.name);
-            let Some(entry) = self.types.get_mut(&c.name.text) else { continue };
-            for decl in c.members.iter().chain(&c.inouts) {
-                let new = |n: &Name| Some((n.text.clone(), (names.var(None, &n.text)?.to_owned(), decl.ty)));
-                entry.members.extend(decl.names.iter().filter_map(new));
-            }
-            let is_inout =
-                |n: &str| entry.inouts.iter().any(|i| entry.members.get(i).is_some_and(|m| m.0 == n));
-            all.push(Composed { name, ..as_block(c, made, is_inout) });
-        }
-        (all, problems)
-    }
 }
 
-fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
+/// The function blocks of a document.
+pub(super) fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
     document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None })
-}
-
-/// A function block as a document, with the functions of the file.
-fn unit(document: &Document, c: &Composed) -> Document {
-    let profile = Profile { name: ProfileName::Iec61131, switches: Vec::new(), at: c.at };
-    let functions = document.items.iter().filter(|i| matches!(i, Item::Function(_))).cloned();
-    let items = std::iter::once(Item::Profile(profile)).chain(functions).chain(as_document(c).items);
-    Document { items: items.collect(), notes: Vec::new() }
 }
 
 /// Gives a literal the form that a type needs, where no type is seen from its text.
@@ -111,52 +114,5 @@ fn typed(e: &mut Expr, ty: Type) {
         } else if ty.is_bits() && ty != Type::Bool {
             *of = Some(ty);
         }
-    }
-}
-
-impl<'d> Lower<'d> {
-    /// The type of an instance.
-    fn block_of(&self, key: VarKey<'d>) -> Option<&'d Renamed> {
-        let of = self.scopes.decl(key).filter(|d| d.is_own_instance())?.of.as_ref()?;
-        let blocks: &'d Blocks = self.blocks;
-        blocks.types.get(&of.text)
-    }
-
-    /// A member of an instance, or a bit of one; so many names stand behind the instance.
-    pub(super) fn inner(
-        &mut self,
-        key: VarKey<'d>,
-        path: &Path,
-        rest: usize,
-        span: Span,
-        at: &At<'d>,
-    ) -> Expr {
-        let of = self.block_of(key);
-        let mut names = self.var_names(key, at);
-        let behind = path.names.len().saturating_sub(rest);
-        for (n, name) in path.names.iter().skip(behind).enumerate() {
-            let member = of.filter(|_| n == 0).and_then(|of| of.members.get(&name.text));
-            names.push(member.map_or_else(|| name.text.to_string(), |(new, _)| new.clone()));
-        }
-        named(&names, span)
-    }
-
-    /// The call of a function block of the file; None for another call.
-    pub(super) fn own_call(&mut self, path: &Path, args: &[Arg], span: Span, at: &At<'d>) -> Option<Stmt> {
-        let Some(Ref::Var(key)) = self.scopes.refer(at.chart, &path.names).filter(|_| !at.function) else {
-            return None;
-        };
-        let of = self.block_of(key)?;
-        self.note(path, true, at);
-        let inout = |a: &Arg| a.name.as_ref().is_some_and(|n| of.inouts.contains(&n.text));
-        args.iter().filter(|a| inout(a)).for_each(|a| self.writes(&a.value, at));
-        let mut args = self.args(args, at);
-        for name in args.iter_mut().filter_map(|a| a.name.as_mut()) {
-            if let Some((new, _)) = of.members.get(&name.text) {
-                name.text = new.as_str().into();
-            }
-        }
-        let name = self.var_names(key, at).join(".");
-        Some(Stmt { kind: StmtKind::Call(nodes::path(&[&name], span), args), at: span.into() })
     }
 }

@@ -25,17 +25,19 @@ mod bodies;
 mod counts;
 mod identifiers;
 mod idle;
+mod instances;
 mod lower;
 mod macros;
 mod watch;
 
 use std::collections::HashSet;
 
-use g7_model::{Chart, Document, Item, Problem, codes, say};
+use g7_model::composed::{as_block, as_document};
+use g7_model::{Chart, Composed, Document, Item, Problem, Profile, ProfileName, codes, say};
 
 use crate::signs;
 
-use blocks::Blocks;
+use blocks::{Blocks, composed};
 pub(crate) use counts::LONGEST;
 use identifiers::Names;
 pub(crate) use idle::without_idle;
@@ -52,7 +54,7 @@ pub(crate) fn without_steps(chart: &Chart) -> Option<Problem> {
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
     let document = &signs::in_signs(document);
     let mut blocks = Blocks::of(document);
-    let (made, mut problems) = blocks.lowered(document, form);
+    let (made, mut problems) = function_blocks(document, form, &mut blocks);
     let (mut out, mut own, mut names) = lowered(document, form, &blocks);
     out.items.splice(1..1, made.into_iter().map(Item::Composed));
     without_idle(&mut out);
@@ -60,6 +62,28 @@ pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Proble
     problems.append(&mut own);
     problems.sort_by_key(|p| (p.at.start, p.at.end));
     (out, problems)
+}
+
+/// Rewrites the function blocks of a document. Each stands behind those that it has instances of, so that their names are
+/// known.
+fn function_blocks(document: &Document, form: Form, blocks: &mut Blocks) -> (Vec<Composed>, Vec<Problem>) {
+    let (mut all, mut problems) = (Vec::new(), Vec::from_iter(blocks.take_changed()));
+    for c in composed(document) {
+        let (made, mut own, names) = lowered(&unit(document, c), form, blocks);
+        problems.append(&mut own);
+        let name = blocks.named(&c.name);
+        let Some(renamed) = blocks.enter(c, &names) else { continue };
+        all.push(Composed { name, ..as_block(c, made, |n| renamed.is_new_inout(n)) });
+    }
+    (all, problems)
+}
+
+/// A function block as a document, with the functions of the file.
+fn unit(document: &Document, c: &Composed) -> Document {
+    let profile = Profile { name: ProfileName::Iec61131, switches: Vec::new(), at: c.at };
+    let functions = document.items.iter().filter(|i| matches!(i, Item::Function(_))).cloned();
+    let items = std::iter::once(Item::Profile(profile)).chain(functions).chain(as_document(c).items);
+    Document { items: items.collect(), notes: Vec::new() }
 }
 
 /// Rewrites all but the function blocks of a document. The first item of the result is the profile.

@@ -1,8 +1,7 @@
 //! The types of a document, and how a variable or a part of one is described while names are replaced.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
-use super::kept::Kept;
 use crate::{
     Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Layout, Name, Problem, Said, Span, Type,
     VarDecl, VarKind,
@@ -19,6 +18,28 @@ pub(super) struct Loop {
     pub(super) name: Box<str>,
     pub(super) least: i128,
     pub(super) most: i128,
+}
+
+/// The function blocks that stay, see [`super::blocks`].
+#[derive(Clone, Default)]
+pub(super) struct Kept {
+    pub(super) names: BTreeSet<Box<str>>,
+    /// Those of them that cannot stay after all.
+    pub(super) refused: BTreeSet<Box<str>>,
+    /// True if an instance can have initial values.
+    pub(super) initial: bool,
+    /// True in the condition of an action. Writers keep the values that it reads, and they keep no members.
+    pub(super) in_condition: bool,
+}
+
+impl Kept {
+    pub(super) fn has(&self, of: &Composed) -> bool {
+        self.names.contains(&of.name.text)
+    }
+
+    pub(super) fn refuse(&mut self, of: &Composed) {
+        self.refused.insert(of.name.text.clone());
+    }
 }
 
 /// The types of a document, and the variables that can have them.
@@ -44,7 +65,7 @@ pub struct Composition<'d> {
     values: HashSet<&'d str>,
     /// The types of which there are variables.
     pub(super) used: HashSet<&'d str>,
-    /// The function blocks that stay, see [`super::kept`].
+    /// The function blocks that stay, see [`super::blocks`].
     pub(super) kept: Kept,
     /// How many variables and statements can still be made.
     pub(super) room: usize,

@@ -16,6 +16,7 @@
 //! - All places are those of the one text. The work is bounded by `MOST`.
 
 mod base;
+mod blocks;
 mod calls;
 mod charts;
 mod chosen;
@@ -23,51 +24,13 @@ mod copies;
 mod declare;
 mod kept;
 mod paths;
+mod plain;
 mod returns;
 mod types;
 mod walk;
 
-use std::borrow::Cow;
-
-use crate::{Composed, Document, Item, Problem};
-
 pub use base::Composition;
-pub use kept::{as_block, as_document, with_blocks};
+pub use blocks::{as_block, as_document, with_blocks};
+pub use plain::decomposed;
 pub use types::DEEP;
 pub(crate) use types::{defined_twice, of_language, unknown_type};
-
-/// Replaces the structures and function blocks of a document. Returns the problems of types and calls as well.
-pub fn decomposed(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
-    let plain = without_locals(document);
-    match Composition::of(&plain).map(|made| made.document(&plain)) {
-        Some((document, problems)) => (Cow::Owned(document), problems),
-        None => (Cow::Borrowed(document), Vec::new()),
-    }
-}
-
-/// The document in which the local variables of the bodies of function blocks are variables of the blocks, which get
-/// their values anew at each call.
-fn without_locals(document: &Document) -> Cow<'_, Document> {
-    let local = |i: &Item| match i {
-        Item::Composed(Composed { body: Some(b), .. }) => {
-            !b.block().locals.is_empty() || returns::in_loops(&b.block().statements)
-        }
-        _ => false,
-    };
-    if !document.items.iter().any(local) {
-        return Cow::Borrowed(document);
-    }
-    let mut own = document.clone();
-    for item in &mut own.items {
-        let Item::Composed(of) = item else { continue };
-        let Some(mut body) = of.body.take() else { continue };
-        let block = body.block_mut();
-        returns::out_of_loops(of, block);
-        let locals = std::mem::take(&mut block.locals);
-        of.members.extend(locals.iter().map(declare::local_member));
-        let values = locals.iter().flat_map(declare::local_values).collect::<Vec<_>>();
-        block.statements.splice(0..0, values);
-        of.body = Some(body);
-    }
-    Cow::Owned(own)
-}

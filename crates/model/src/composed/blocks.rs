@@ -1,0 +1,292 @@
+//! Function blocks that stay, for formats that have such: a call stays a call, and an instance is one variable.
+//!
+//! ```text
+//! instances -> with_blocks -> the writers of exchange that have function blocks
+//! ```
+//!
+//! # What must hold
+//!
+//! - A function block stays if it has a body and no chart, if its inputs, outputs and in-outs are of elementary types,
+//!   if its body names nothing of the file but constants and values of enumerations, and if others use nothing of its
+//!   instances but calls, inputs and outputs, these not in the conditions of actions. Each other one is taken apart, see
+//!   [`super`].
+//! - The members and the body of a function block that stays are plain, like all else in the result.
+//! - A function block that stays stands behind those that it has instances of.
+
+use std::borrow::Cow;
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+use super::base::{Composition, Kept};
+use super::kept::is_parameter;
+use super::plain::{decomposed, without_locals};
+use crate::visit_mut::{self, Use, Visitor};
+use crate::{
+    Body, Composed, Document, Expr, ExprKind, Item, Literal, Path, Problem, Severity, Span, Stmt, StmtKind,
+    UnaryOp, VarDecl, VarKind, codes,
+};
+
+/// The document without structures, and without function blocks except those that can stay; if `initial`, their instances
+/// can have initial values. Tells what these do otherwise; all other problems are those of [`decomposed`], which the caller has
+/// seen.
+pub fn with_blocks(document: &Document, initial: bool) -> (Cow<'_, Document>, Vec<Problem>) {
+    let mut kept = candidates(document);
+    while !kept.is_empty() {
+        match staying(document, &Kept { names: kept.clone(), initial, ..Kept::default() }) {
+            Ok((made, told)) => return (Cow::Owned(made), told),
+            // Each round refuses at least one more.
+            Err(refused) => kept.retain(|name| !refused.contains(name)),
+        }
+    }
+    (decomposed(document).0, Vec::new())
+}
+
+/// A function block as a document: its members and in-outs are the variables, and its body stands before the charts.
+pub fn as_document(of: &Composed) -> Document {
+    let variables = of.members.iter().chain(&of.inouts).cloned().map(Item::Var);
+    let body = of.body.clone().map(|body| Item::Pre(body, of.at));
+    Document { items: variables.chain(body).collect(), notes: Vec::new() }
+}
+
+/// The function block that a document of [`as_document`] has become; `inout` tells the names of its in-outs.
+pub fn as_block(of: &Composed, document: Document, inout: impl Fn(&str) -> bool) -> Composed {
+    let (mut members, mut inouts, mut body) = (Vec::new(), Vec::new(), None);
+    for item in document.items {
+        match item {
+            Item::Var(v) if v.names.iter().any(|n| inout(&n.text)) => inouts.push(v),
+            Item::Var(v) => members.push(v),
+            Item::Pre(own, _) => body = Some(own),
+            _ => {}
+        }
+    }
+    Composed { members, inouts, body, ..of.clone() }
+}
+
+/// The function blocks that can stay as far as their own text tells.
+fn candidates(document: &Document) -> BTreeSet<Box<str>> {
+    let with_charts: BTreeSet<&str> =
+        document.charts().filter_map(|c| c.block.as_ref()).map(|b| &*b.text).collect();
+    let known = Known::of(document);
+    composed(document)
+        .filter(|c| c.block && !with_charts.contains(&*c.name.text))
+        .filter(|c| known.fits(c))
+        .map(|c| c.name.text.clone())
+        .collect()
+}
+
+fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
+    document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None })
+}
+
+/// The names of a file that a function block can use and stay: values of enumerations, and constants with a written
+/// value.
+struct Known<'d> {
+    values: HashSet<&'d str>,
+    constants: HashMap<&'d str, &'d Expr>,
+}
+
+impl<'d> Known<'d> {
+    fn of(document: &'d Document) -> Known<'d> {
+        let mut known = Known { values: HashSet::new(), constants: HashMap::new() };
+        for item in &document.items {
+            match item {
+                Item::Type(t) => {
+                    known
+                        .values
+                        .extend(t.names.iter().chain(t.values().iter().map(|(n, _)| n)).map(|n| &*n.text));
+                }
+                Item::Var(v) if v.kind == VarKind::Const => {
+                    let value = v.init.as_ref().filter(|e| is_written(e) && v.limits.is_none());
+                    known.constants.extend(v.names.iter().filter_map(|n| Some((&*n.text, value?))));
+                }
+                _ => {}
+            }
+        }
+        known
+    }
+
+    fn fits(&self, of: &Composed) -> bool {
+        let plain = |v: &VarDecl| v.of.is_none() && v.array.is_none();
+        let parameters = of.members.iter().filter(|m| is_parameter(m)).chain(&of.inouts);
+        let mut all = of.members.iter().chain(&of.inouts);
+        let Some(body) = &of.body else { return false };
+        let mut names = Names { own: own_names(of), known: self, fits: true };
+        let mut body = body.block().clone();
+        body.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| visit_mut::expr(e, &mut names));
+        visit_mut::stmts(&mut body.statements, &mut names);
+        names.fits && parameters.into_iter().all(plain) && all.all(|m| m.limits.is_none())
+    }
+}
+
+/// True for a literal, also with a sign.
+fn is_written(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Literal(_) => true,
+        ExprKind::Unary(UnaryOp::Neg, inner) => matches!(inner.kind, ExprKind::Literal(Literal::Int(..))),
+        _ => false,
+    }
+}
+
+/// The names that a function block declares.
+fn own_names(of: &Composed) -> BTreeSet<Box<str>> {
+    let locals = of.body.iter().flat_map(|b| &b.block().locals).flat_map(|l| &l.names);
+    let members = of.members.iter().chain(&of.inouts).flat_map(|m| &m.names);
+    members.chain(locals).map(|n| n.text.clone()).collect()
+}
+
+/// Looks whether a body names anything else of the file.
+struct Names<'k, 'd> {
+    own: BTreeSet<Box<str>>,
+    known: &'k Known<'d>,
+    fits: bool,
+}
+
+impl Visitor for Names<'_, '_> {
+    fn path(&mut self, path: &mut Path, how: Use, _: Span) {
+        let Some(first) = path.names.first().map(|n| bare(&n.text)) else { return };
+        let own = self.own.contains(first);
+        let known = self.known.values.contains(first) || self.known.constants.contains_key(first);
+        self.fits &= own || known && how == Use::Read;
+    }
+
+    fn expr(&mut self, e: &mut Expr) {
+        self.fits &= !matches!(e.kind, ExprKind::Direct(_));
+    }
+
+    fn stmt(&mut self, s: &mut Stmt) {
+        let StmtKind::For { var, .. } = &s.kind else { return };
+        self.fits &= self.own.contains(&var.text);
+    }
+}
+
+/// The name before the place of indexes, `a[]`.
+fn bare(text: &str) -> &str {
+    text.split_once('[').map_or(text, |(bare, _)| bare)
+}
+
+/// Puts the values of constants of the file in their places in a function block.
+struct Constants<'k, 'd> {
+    own: BTreeSet<Box<str>>,
+    known: &'k Known<'d>,
+}
+
+impl Visitor for Constants<'_, '_> {
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Path(path) = &e.kind else { return };
+        let [name] = path.names.as_slice() else { return };
+        if let Some(value) = self.known.constants.get(&*name.text).filter(|_| !self.own.contains(&name.text))
+        {
+            e.kind = value.kind.clone();
+        }
+    }
+}
+
+/// The document in which these function blocks stay.
+///
+/// # Errors
+///
+/// Those of them that cannot.
+fn staying(document: &Document, kept: &Kept) -> Result<(Document, Vec<Problem>), BTreeSet<Box<str>>> {
+    let mut main = Plain::of(document, kept);
+    if main.wrong {
+        return Err(kept.names.clone());
+    }
+    let known = Known::of(document);
+    let mut units = Units { document, kept, known, made: Vec::new(), seen: BTreeSet::new(), told: main.told };
+    let mut refused = std::mem::take(&mut main.refused);
+    main.used.iter().for_each(|name| units.add(name, &mut refused));
+    if !refused.is_empty() {
+        return Err(refused);
+    }
+    let mut items: Vec<Item> = main.document.items;
+    let first = items.iter().position(|i| matches!(i, Item::Var(_) | Item::Chart(_))).unwrap_or(items.len());
+    items.splice(first..first, units.made.into_iter().map(Item::Composed));
+    Ok((Document { items, notes: main.document.notes }, units.told))
+}
+
+/// A document in plain form.
+struct Plain {
+    document: Document,
+    /// The function blocks that stay and of which there are instances, in the order of the document.
+    used: Vec<Box<str>>,
+    refused: BTreeSet<Box<str>>,
+    /// True if an error was found.
+    wrong: bool,
+    /// Tells of what runs otherwise.
+    told: Vec<Problem>,
+}
+
+impl Plain {
+    fn of(document: &Document, kept: &Kept) -> Plain {
+        let own = without_locals(document);
+        let Some(mut made) = Composition::of(&own) else {
+            let (used, refused) = (Vec::new(), BTreeSet::new());
+            let document = own.into_owned();
+            return Plain { document, used, refused, wrong: false, told: Vec::new() };
+        };
+        made.kept.clone_from(kept);
+        let plain = made.walked(&own);
+        let used = composed(document).map(|c| &c.name.text);
+        let used = used.filter(|n| made.kept.names.contains(*n) && made.used.contains(&***n));
+        let wrong = made.problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
+        let used = used.cloned().collect();
+        let mut told = made.problems;
+        told.retain(|p| p.code.id == codes::DIFFERENT.id);
+        Plain { used, document: plain, refused: made.kept.refused, wrong, told }
+    }
+}
+
+/// The function blocks that stay, each behind those that it has instances of.
+struct Units<'d> {
+    document: &'d Document,
+    kept: &'d Kept,
+    known: Known<'d>,
+    made: Vec<Composed>,
+    seen: BTreeSet<Box<str>>,
+    told: Vec<Problem>,
+}
+
+impl Units<'_> {
+    fn add(&mut self, name: &str, refused: &mut BTreeSet<Box<str>>) {
+        let Some(of) = composed(self.document).find(|c| *c.name.text == *name) else { return };
+        if !self.seen.insert(of.name.text.clone()) {
+            return;
+        }
+        let unit = Plain::of(&self.unit(of), self.kept);
+        refused.extend(unit.refused);
+        self.told.extend(unit.told);
+        if unit.wrong {
+            refused.insert(of.name.text.clone());
+            return;
+        }
+        unit.used.iter().for_each(|inner| self.add(inner, refused));
+        let inouts: HashSet<&str> = of.inouts.iter().flat_map(|i| &i.names).map(|n| &*n.text).collect();
+        self.made.push(as_block(of, unit.document, |n| inouts.contains(n)));
+    }
+
+    /// The function block as a document with the types of the file.
+    fn unit(&self, of: &Composed) -> Document {
+        let mut constants = Constants { own: own_names(of), known: &self.known };
+        let mut own = of.clone();
+        for v in own.members.iter_mut().chain(&mut own.inouts) {
+            v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut constants));
+            for (least, most) in v.array.iter_mut().flat_map(|a| &mut a.dimensions) {
+                visit_mut::expr(least, &mut constants);
+                visit_mut::expr(most, &mut constants);
+            }
+        }
+        if let Some(body) = &mut own.body {
+            // The constants stand in the statements, whatever language shows these.
+            let mut block = body.block().clone();
+            block
+                .locals
+                .iter_mut()
+                .filter_map(|l| l.init.as_mut())
+                .for_each(|e| visit_mut::expr(e, &mut constants));
+            visit_mut::stmts(&mut block.statements, &mut constants);
+            *body = Body::St(block);
+        }
+        let types = self.document.items.iter().filter(|i| matches!(i, Item::Composed(_) | Item::Type(_)));
+        let items = types.cloned().chain(as_document(&own).items).collect();
+        Document { items, notes: Vec::new() }
+    }
+}
