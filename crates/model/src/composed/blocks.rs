@@ -25,15 +25,20 @@ use crate::{
     UnaryOp, VarDecl, VarKind, codes,
 };
 
+/// How often a document is looked through for function blocks that cannot stay; after that, all are taken apart.
+const ROUNDS: usize = 16;
+
 /// The document without structures, and without function blocks except those that can stay; if `initial`, their instances
 /// can have initial values. Tells what these do otherwise; all other problems are those of [`decomposed`], which the caller has
 /// seen.
 pub fn with_blocks(document: &Document, initial: bool) -> (Cow<'_, Document>, Vec<Problem>) {
     let mut kept = candidates(document);
-    while !kept.is_empty() {
+    for _ in 0..ROUNDS {
+        if kept.is_empty() {
+            break;
+        }
         match staying(document, &Kept { names: kept.clone(), initial, ..Kept::default() }) {
             Ok((made, told)) => return (Cow::Owned(made), told),
-            // Each round refuses at least one more.
             Err(refused) => kept.retain(|name| !refused.contains(name)),
         }
     }
@@ -81,12 +86,15 @@ fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
 /// value.
 struct Known<'d> {
     values: HashSet<&'d str>,
+    /// The names of variables, which hide such values.
+    variables: HashSet<&'d str>,
     constants: HashMap<&'d str, &'d Expr>,
 }
 
 impl<'d> Known<'d> {
     fn of(document: &'d Document) -> Known<'d> {
-        let mut known = Known { values: HashSet::new(), constants: HashMap::new() };
+        let mut known =
+            Known { values: HashSet::new(), variables: HashSet::new(), constants: HashMap::new() };
         for item in &document.items {
             match item {
                 Item::Type(t) => {
@@ -98,10 +106,15 @@ impl<'d> Known<'d> {
                     let value = v.init.as_ref().filter(|e| is_written(e) && v.limits.is_none());
                     known.constants.extend(v.names.iter().filter_map(|n| Some((&*n.text, value?))));
                 }
+                Item::Var(v) => known.variables.extend(v.names.iter().map(|n| &*n.text)),
                 _ => {}
             }
         }
         known
+    }
+
+    fn has(&self, name: &str) -> bool {
+        self.constants.contains_key(name) || self.values.contains(name) && !self.variables.contains(name)
     }
 
     fn fits(&self, of: &Composed) -> bool {
@@ -143,9 +156,7 @@ struct Names<'k, 'd> {
 impl Visitor for Names<'_, '_> {
     fn path(&mut self, path: &mut Path, how: Use, _: Span) {
         let Some(first) = path.names.first().map(|n| bare(&n.text)) else { return };
-        let own = self.own.contains(first);
-        let known = self.known.values.contains(first) || self.known.constants.contains_key(first);
-        self.fits &= own || known && how == Use::Read;
+        self.fits &= self.own.contains(first) || self.known.has(first) && how == Use::Read;
     }
 
     fn expr(&mut self, e: &mut Expr) {
@@ -190,8 +201,15 @@ fn staying(document: &Document, kept: &Kept) -> Result<(Document, Vec<Problem>),
     if main.wrong {
         return Err(kept.names.clone());
     }
-    let known = Known::of(document);
-    let mut units = Units { document, kept, known, made: Vec::new(), seen: BTreeSet::new(), told: main.told };
+    let mut units = Units {
+        types: composed(document).map(|c| (&*c.name.text, c)).collect(),
+        enumerations: document.items.iter().filter(|i| matches!(i, Item::Type(_))).collect(),
+        kept,
+        known: Known::of(document),
+        made: Vec::new(),
+        seen: BTreeSet::new(),
+        told: main.told,
+    };
     let mut refused = std::mem::take(&mut main.refused);
     main.used.iter().for_each(|name| units.add(name, &mut refused));
     if !refused.is_empty() {
@@ -237,7 +255,9 @@ impl Plain {
 
 /// The function blocks that stay, each behind those that it has instances of.
 struct Units<'d> {
-    document: &'d Document,
+    types: HashMap<&'d str, &'d Composed>,
+    /// The other types of the file.
+    enumerations: Vec<&'d Item>,
     kept: &'d Kept,
     known: Known<'d>,
     made: Vec<Composed>,
@@ -245,9 +265,9 @@ struct Units<'d> {
     told: Vec<Problem>,
 }
 
-impl Units<'_> {
+impl<'d> Units<'d> {
     fn add(&mut self, name: &str, refused: &mut BTreeSet<Box<str>>) {
-        let Some(of) = composed(self.document).find(|c| *c.name.text == *name) else { return };
+        let Some(of) = self.types.get(name).copied() else { return };
         if !self.seen.insert(of.name.text.clone()) {
             return;
         }
@@ -263,8 +283,8 @@ impl Units<'_> {
         self.made.push(as_block(of, unit.document, |n| inouts.contains(n)));
     }
 
-    /// The function block as a document with the types of the file.
-    fn unit(&self, of: &Composed) -> Document {
+    /// The function block as a document with the types of its variables.
+    fn unit(&self, of: &'d Composed) -> Document {
         let mut constants = Constants { own: own_names(of), known: &self.known };
         let mut own = of.clone();
         for v in own.members.iter_mut().chain(&mut own.inouts) {
@@ -285,8 +305,26 @@ impl Units<'_> {
             visit_mut::stmts(&mut block.statements, &mut constants);
             *body = Body::St(block);
         }
-        let types = self.document.items.iter().filter(|i| matches!(i, Item::Composed(_) | Item::Type(_)));
-        let items = types.cloned().chain(as_document(&own).items).collect();
+        let types = self.within(of);
+        // Function blocks that are taken apart in this one may name values of enumerations.
+        let named = self.enumerations.iter().copied().filter(|_| !types.is_empty());
+        let types = types.iter().map(|c| Item::Composed((*c).clone()));
+        let items = named.cloned().chain(types).chain(as_document(&own).items).collect();
         Document { items, notes: Vec::new() }
+    }
+
+    /// The types of a function block's variables, and those of their members.
+    fn within(&self, of: &'d Composed) -> Vec<&'d Composed> {
+        let (mut found, mut seen, mut next) = (Vec::new(), BTreeSet::new(), vec![of]);
+        while let Some(one) = next.pop() {
+            for name in one.members.iter().chain(&one.inouts).filter_map(|m| m.of.as_ref()) {
+                if let Some(inner) = self.types.get(&*name.text).copied().filter(|_| seen.insert(&*name.text))
+                {
+                    found.push(inner);
+                    next.push(inner);
+                }
+            }
+        }
+        found
     }
 }

@@ -211,7 +211,9 @@ impl<'d> Exporter<'d> {
         if body.is_empty() {
             body.push_str("  ;\n");
         }
-        format!("FUNCTION_BLOCK {}\n{}\n{body}END_FUNCTION_BLOCK\n\n", c.name.text, declarations.print(1))
+        let comment = c.comment.as_ref().map_or_else(String::new, |c| format!("  (* {} *)\n", clean(c)));
+        let (name, declarations) = (&c.name.text, declarations.print(1));
+        format!("FUNCTION_BLOCK {name}\n{comment}{declarations}\n{body}END_FUNCTION_BLOCK\n\n")
     }
 
     fn function(&self, f: &'d Function) -> String {
