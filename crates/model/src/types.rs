@@ -101,6 +101,11 @@ impl FbKind {
         }
     }
 
+    /// The type of a member, whose name is in any case.
+    pub fn type_of(self, member: &str) -> Option<Type> {
+        self.members().iter().find(|m| m.0.eq_ignore_ascii_case(member)).map(|m| m.1)
+    }
+
     /// The members in call order: inputs first, then outputs; name, type, whether an input.
     pub fn members(self) -> &'static [(&'static str, Type, bool)] {
         use Type::{Bool, Int, Time};

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, Composed, Document, FbKind, Item, Name, Path, Type, VarDecl};
+use g7_model::{Chart, Composed, Document, Item, Name, Path, Type, VarDecl};
 
 /// The types of names.
 #[derive(Debug, Default)]
@@ -66,7 +66,7 @@ impl<'d> Types<'d> {
                 Named::Instance(_) => None,
             },
             [first, second] => match self.names.get(&*first.text) {
-                Some(Named::Of(Type::Fb(kind))) => of_standard(*kind, &second.text),
+                Some(Named::Of(Type::Fb(kind))) => kind.type_of(&second.text),
                 Some(Named::Instance(block)) => of_own(block, &second.text),
                 Some(Named::Of(_)) => None,
                 None if second.text.eq_ignore_ascii_case("X") => Some(Type::Bool),
@@ -80,7 +80,7 @@ impl<'d> Types<'d> {
     pub(super) fn of_member(&self, instance: &Path, member: &str) -> Option<Type> {
         let [name] = instance.names.as_slice() else { return None };
         match self.names.get(&*name.text)? {
-            Named::Of(Type::Fb(kind)) => of_standard(*kind, member),
+            Named::Of(Type::Fb(kind)) => kind.type_of(member),
             Named::Of(_) => None,
             Named::Instance(block) => of_own(block, member),
         }
@@ -90,11 +90,6 @@ impl<'d> Types<'d> {
     pub(super) fn of_function(&self, name: &str) -> Option<Type> {
         self.functions.get(name).copied()
     }
-}
-
-/// The type of the member of a function block of the standard with this name, in any case.
-fn of_standard(kind: FbKind, name: &str) -> Option<Type> {
-    kind.members().iter().find(|m| m.0.eq_ignore_ascii_case(name)).map(|m| m.1)
 }
 
 fn of_own(block: &Composed, name: &str) -> Option<Type> {

@@ -4,7 +4,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use g7_model::{Composed, Document, Expr, ExprKind, Item, Literal, Name, Problem, Type, VarDecl};
+use g7_model::{Composed, Document, Expr, ExprKind, Item, Literal, Name, Problem, Type, UnaryOp, VarDecl};
 
 use super::identifiers::Names;
 use crate::report::renamed;
@@ -21,15 +21,22 @@ pub(super) struct Blocks {
 #[derive(Default)]
 pub(super) struct Renamed {
     name: String,
-    /// The members, by their names in the document, with their types.
-    members: HashMap<Box<str>, (String, Type)>,
+    /// The new names of the members, by those in the document.
+    members: HashMap<Box<str>, String>,
+    /// The types of the members, by their new names.
+    types: HashMap<String, Type>,
     inouts: Vec<Box<str>>,
 }
 
 impl Renamed {
     /// The new name of a member.
     pub(super) fn member(&self, name: &str) -> Option<&str> {
-        self.members.get(name).map(|(new, _)| new.as_str())
+        self.members.get(name).map(String::as_str)
+    }
+
+    /// The type of a member, by its new name.
+    pub(super) fn type_of(&self, new: &str) -> Option<Type> {
+        self.types.get(new).copied()
     }
 
     /// True for the name of an in-out, as the document has it.
@@ -51,7 +58,7 @@ impl Blocks {
         for c in composed(document) {
             let name = names.give(None, &c.name, "", "");
             let inouts = c.inouts.iter().flat_map(|i| &i.names).map(|n| n.text.clone()).collect();
-            made.types.insert(c.name.text.clone(), Renamed { name, members: HashMap::new(), inouts });
+            made.types.insert(c.name.text.clone(), Renamed { name, inouts, ..Renamed::default() });
         }
         made.changed = renamed(&names.renamed);
         made
@@ -75,8 +82,11 @@ impl Blocks {
     pub(super) fn enter(&mut self, c: &Composed, names: &Names) -> Option<&Renamed> {
         let entry = self.types.get_mut(&c.name.text)?;
         for decl in c.members.iter().chain(&c.inouts) {
-            let new = |n: &Name| Some((n.text.clone(), (names.var(None, &n.text)?.to_owned(), decl.ty)));
-            entry.members.extend(decl.names.iter().filter_map(new));
+            for name in &decl.names {
+                let Some(new) = names.var(None, &name.text) else { continue };
+                entry.members.insert(name.text.clone(), new.to_owned());
+                entry.types.insert(new.to_owned(), decl.ty);
+            }
         }
         Some(entry)
     }
@@ -89,14 +99,14 @@ impl Blocks {
     /// Puts the new names of its type and of the parameters that have initial values into the declaration of an instance.
     pub(super) fn instance(&self, decl: &mut VarDecl) {
         let Some(of) = &mut decl.of else { return };
-        let members = self.types.get(&of.text).map(|t| &t.members);
+        let block = self.types.get(&of.text);
         **of = self.named(of);
         let Some(Expr { kind: ExprKind::Call(_, fields), .. }) = &mut decl.init else { return };
         for field in fields {
             let Some(name) = &mut field.name else { continue };
-            let Some((new, ty)) = members.and_then(|m| m.get(&name.text)) else { continue };
-            name.text = new.as_str().into();
-            typed(&mut field.value, *ty);
+            let Some((block, new)) = block.and_then(|b| Some((b, b.member(&name.text)?))) else { continue };
+            name.text = new.into();
+            block.type_of(new).iter().for_each(|ty| typed(&mut field.value, *ty));
         }
     }
 }
@@ -108,11 +118,12 @@ pub(super) fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
 
 /// Gives a literal the form that a type needs, where no type is seen from its text.
 fn typed(e: &mut Expr, ty: Type) {
-    if let ExprKind::Literal(Literal::Int(n, of @ None)) = &mut e.kind {
-        if ty.is_real() {
+    match &mut e.kind {
+        ExprKind::Literal(Literal::Int(n, None)) if ty.is_real() => {
             e.kind = ExprKind::Literal(Literal::Real(format!("{n}.0").into(), None));
-        } else if ty.is_bits() && ty != Type::Bool {
-            *of = Some(ty);
         }
+        ExprKind::Literal(Literal::Int(_, of @ None)) if ty.is_bits() && ty != Type::Bool => *of = Some(ty),
+        ExprKind::Unary(UnaryOp::Neg, inner) => typed(inner, ty),
+        _ => {}
     }
 }

@@ -112,9 +112,11 @@ impl<'d> Lower<'d> {
             Some(Ref::Var(key)) if at.condition && self.moved.contains(&key) => self.copy(key, span),
             Some(Ref::Var(key)) => self.variable(key, span, at),
             Some(Ref::Member(key, member)) if !at.function => {
-                let mut names = self.var_names(key, at);
-                names.push(member.to_string());
-                named(&names, span)
+                let ty = match self.scopes.decl(key).map(|d| d.ty) {
+                    Some(Type::Fb(kind)) => kind.type_of(member),
+                    _ => None,
+                };
+                named(&self.member(key, member, ty, span, at), span)
             }
             Some(Ref::Inner(key, rest)) if !at.function => self.inner(key, path, rest, span, at),
             Some(Ref::Bit(key, bit)) if !at.function => self.bit(key, bit, path, span, at),

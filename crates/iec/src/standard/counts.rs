@@ -148,40 +148,52 @@ impl<'d> Lower<'d> {
 
     /// A variable as it was before the actions and bodies of the scan.
     pub(super) fn copy(&mut self, key: VarKey<'d>, span: Span) -> Expr {
-        if let Some(known) = self.copies.get(&key) {
-            return nodes::name(&[known], span);
-        }
         let Some(decl) = self.scopes.decl(key) else { return nodes::bad(span) };
-        // The copy is made by a program of its own, so the variable becomes one of the file.
-        if key.0.is_some() && self.units.is_empty() {
-            self.wanted.insert(key);
-        }
-        let own = self.names.var(key.0, key.1).unwrap_or(key.1).to_string();
-        let name = self.fresh(None, &format!("{own}_before"), decl.ty, span);
-        if let Some(copy) = self.new_globals.last_mut() {
+        let known = self.copies.len();
+        let copy = self.copy_of(key, None, decl.ty, span);
+        if self.copies.len() > known
+            && let Some(copy) = self.new_globals.last_mut()
+        {
             copy.array.clone_from(&decl.array);
         }
-        self.copies.insert(key, name.clone());
+        copy
+    }
+
+    /// The same of a variable or of a member of an instance, which is of this type.
+    pub(super) fn copy_of(&mut self, key: VarKey<'d>, member: Option<&str>, ty: Type, span: Span) -> Expr {
+        let place = (key, member.map(str::to_owned));
+        if let Some(known) = self.copies.get(&place) {
+            return nodes::name(&[known], span);
+        }
+        // The copy is made by a program of its own, so the variable becomes one of the file.
+        if key.0.is_some() && (self.units.is_empty() || member.is_some()) {
+            self.wanted.insert(key);
+        }
+        let own = self.names.var(key.0, key.1).unwrap_or(key.1);
+        let wish = member.map_or_else(|| format!("{own}_before"), |m| format!("{own}_{m}_before"));
+        let name = self.fresh(None, &wish, ty, span);
+        self.copies.insert(place, name.clone());
         nodes::name(&[&name], span)
     }
 
     /// The statements that make the copies.
     pub(super) fn copied(&self, body: &mut Vec<Stmt>) {
         let at = Span::default();
-        for (key, name) in &self.copies {
+        for ((key, member), name) in &self.copies {
             let own = self.names.var(key.0, key.1).unwrap_or(key.1);
-            let unit = key.0.and_then(|c| self.program_of(c)).and_then(|p| self.units.get(p));
-            let path: Vec<&str> = unit.map(String::as_str).into_iter().chain([own]).collect();
+            let unit = key.0.filter(|_| member.is_none()).and_then(|c| self.program_of(c));
+            let unit = unit.and_then(|p| self.units.get(p)).map(String::as_str);
+            let path: Vec<&str> = unit.into_iter().chain([own]).chain(member.as_deref()).collect();
             body.push(nodes::assign(nodes::name(&[name], at), nodes::name(&path, at), at));
         }
     }
 
-    /// The variables that actions drive or bodies of charts write.
+    /// The variables that actions drive or bodies of charts write, and the instances that these call.
     pub(super) fn moving(&self) -> HashSet<VarKey<'d>> {
         struct Writes(Vec<Path>);
         impl Visitor for Writes {
             fn path(&mut self, path: &mut Path, how: Use, _at: Span) {
-                if how == Use::Write {
+                if how != Use::Read {
                     self.0.push(path.clone());
                 }
             }

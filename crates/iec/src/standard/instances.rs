@@ -1,6 +1,6 @@
 //! Instances of function blocks of the file: their calls and their members, by the new names.
 
-use g7_model::{Arg, Expr, Path, Span, Stmt, StmtKind};
+use g7_model::{Arg, Expr, ExprKind, Path, Span, Stmt, StmtKind, Type, say};
 
 use super::blocks::Renamed;
 use super::bodies::{At, named};
@@ -15,6 +15,26 @@ impl<'d> Lower<'d> {
         self.blocks.get(&of.text)
     }
 
+    /// The names that lead to a member of an instance; in the condition of an action, to its copy if bodies call the
+    /// instance.
+    pub(super) fn member(
+        &mut self,
+        key: VarKey<'d>,
+        member: &str,
+        ty: Option<Type>,
+        span: Span,
+        at: &At<'d>,
+    ) -> Vec<String> {
+        if let Some(ty) = ty.filter(|_| at.condition && self.moved.contains(&key))
+            && let ExprKind::Path(copy) = self.copy_of(key, Some(member), ty, span).kind
+        {
+            return copy.names.iter().map(|n| n.text.to_string()).collect();
+        }
+        let mut names = self.var_names(key, at);
+        names.push(member.to_owned());
+        names
+    }
+
     /// A member of an instance, or a bit of one; so many names stand behind the instance.
     pub(super) fn inner(
         &mut self,
@@ -24,13 +44,14 @@ impl<'d> Lower<'d> {
         span: Span,
         at: &At<'d>,
     ) -> Expr {
-        let of = self.block_of(key);
-        let mut names = self.var_names(key, at);
-        let behind = path.names.len().saturating_sub(rest);
-        for (n, name) in path.names.iter().skip(behind).enumerate() {
-            let member = of.filter(|_| n == 0).and_then(|of| of.member(&name.text));
-            names.push(member.unwrap_or(&name.text).to_owned());
-        }
+        let behind: Vec<&str> =
+            path.names.iter().skip(path.names.len().saturating_sub(rest)).map(|n| &*n.text).collect();
+        let (Some(of), [member, bits @ ..]) = (self.block_of(key), behind.as_slice()) else {
+            return self.nothing(span, say!("`{}` has no counterpart", path.text()));
+        };
+        let member = of.member(member).unwrap_or(member);
+        let mut names = self.member(key, member, of.type_of(member), span, at);
+        names.extend(bits.iter().map(|bit| (*bit).to_owned()));
         named(&names, span)
     }
 

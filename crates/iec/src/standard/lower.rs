@@ -58,8 +58,8 @@ pub(super) struct Lower<'d> {
     pub(super) scan_clock: bool,
     /// The variables that change behind the conditions of actions: actions or bodies of charts write them.
     pub(super) moved: HashSet<VarKey<'d>>,
-    /// The copies of such variables that conditions read.
-    pub(super) copies: BTreeMap<VarKey<'d>, String>,
+    /// The copies of such variables that conditions read, and of members of such instances.
+    pub(super) copies: BTreeMap<(VarKey<'d>, Option<String>), String>,
     /// The counted time of each step, in scans or (true) in seconds.
     pub(super) counts: BTreeMap<(StepKey, bool), String>,
     /// The time of each macro-step, or step of another program, that is read.

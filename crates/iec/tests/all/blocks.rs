@@ -166,15 +166,46 @@ fn an_array_of_instances_is_an_instance_for_each_element() {
     assert!(has(&text, lines), "{text}");
 }
 
-/// The generator of Beremiz leaves out the initial values of an instance.
+/// A condition of an action reads what was there before all bodies.
 #[test]
-fn an_instance_with_initial_values_is_taken_apart_for_matiec() {
-    let plain = with_chart(CHART);
-    let without =
-        document(&format!("profile iec61131\n{COUNT}{CHART}").replace(" := (step_by := 3, mask := 1)", ""));
+fn an_output_in_a_condition_is_that_from_before_the_bodies() {
+    let called = |place: &str| {
+        let chart = format!(
+            "chart G {{ initial step 1 {{ N y if first.n > 3 {} }} }}\npost {{ x := first.n  {} }}\n",
+            if place == "chart" { "each scan: first(a, total := sum)" } else { "" },
+            if place == "post" { "first(a, total := sum)" } else { "" },
+        );
+        text_of(&with_chart(&chart))
+    };
+    let (within, behind) = (called("chart"), called("post"));
+    assert!(has(&within, "first_n_before := first.n;"), "{within}");
+    assert!(within.contains("first_n_before > 3.0"), "{within}");
+    assert!(behind.contains("first.n > 3.0") && !behind.contains("before"), "{behind}");
+}
+
+/// The generator of Beremiz leaves out the initial values of an instance, so its calls give these.
+#[test]
+fn calls_give_the_initial_values_of_inputs_for_matiec() {
+    let count = |init: &str| COUNT.replace("(step_by := 3, mask := 1)", init);
+    let file = |init: &str, chart: &str| document(&format!("profile iec61131\n{}{chart}", count(init)));
+    let chart = "chart G { initial step 1 { each scan: first(a, total := sum, n => x) } }\n";
     for dialect in [Dialect::Beremiz, Dialect::OpenPlc] {
-        assert!(!project(&plain, dialect).contains("functionBlock"));
-        assert!(project(&without, dialect).contains("functionBlock"));
+        let xml = project(&file("(step_by := -2.5)", chart), dialect);
+        assert!(xml.contains("pouType=\"functionBlock\""), "{xml}");
+        assert!(xml.contains("first(step_by := -2.5, up := a, total := sum)"), "{xml}");
+        assert!(!xml.contains("structValue"), "{xml}");
+        let others = [
+            ("(mask := 1)", chart),
+            ("(step_by := 3)", "post { first(a, step_by := 1, total := sum) }\nchart G { initial step 1 }\n"),
+            (
+                "(step_by := 3)",
+                "post { first(a, total := sum) first.step_by := 2 }\nchart G { initial step 1 }\n",
+            ),
+        ];
+        for (init, chart) in others {
+            let xml = project(&file(init, chart), dialect);
+            assert!(!xml.contains("functionBlock"), "{init} {chart} {xml}");
+        }
     }
 }
 
@@ -245,10 +276,6 @@ fn a_function_block_is_taken_apart_where_it_could_not_mean_the_same() {
         ),
         ("an input that a step drives", &format!("chart G {{ initial step 1 {{ N first.up  {call} }} }}")),
         (
-            "an output in the condition of an action",
-            &format!("chart G {{ initial step 1 {{ N y if first.n > 3  {call} }} }}"),
-        ),
-        (
             "an instance in a structure",
             "struct Two { one : Count }\nvar two : Two\npost { two.one(up := a, total := sum) y := first.up }\nchart G { initial step 1 }",
         ),
@@ -295,4 +322,46 @@ chart H { initial step 1 1 -> 1 when first.mask.3 }
     let xml = project(&document, Dialect::Codesys);
     assert!(has(&xml, "<globalVars name=\"Variables\">\n<variable name=\"first\">"), "{xml}");
     assert_eq!(xml.matches("pouType=\"functionBlock\"").count(), 1, "{xml}");
+}
+
+#[test]
+fn parameters_of_an_enumeration_stay_and_their_values_are_numbers() {
+    let text = "profile iec61131
+type Mode : (Off, Slow := 5, Fast)
+type Percent : INT(0..100)
+function block Drive {
+  input wish : Mode
+  output state : Mode
+  output speed : INT
+  body {
+    state := wish
+    CASE state OF Mode.Fast: speed := 90 Mode.Slow: speed := 20 ELSE speed := 0 END_CASE
+  }
+}
+var drive : Drive
+var seen : Mode
+var percent : Percent
+output lamp : BOOL
+chart G {
+  initial step 1 { each scan: drive(wish := Fast, state => seen, speed => percent) }
+  1 -> 1 when drive.state = Fast and seen <> Slow
+}
+post { lamp := drive.state = Mode.Slow }
+";
+    let written = text_of(&document(text));
+    let lines = "FUNCTION_BLOCK Drive
+        VAR_INPUT
+        wish : INT;
+        state : INT;
+        state := wish;
+        6:
+        speed := 90;
+        END_FUNCTION_BLOCK
+        drive_2(wish := 6);
+        seen := drive_2.state;
+        := drive_2.state = 6 AND seen <> 5;
+        lamp := drive_2.state = 5;";
+    assert!(has(&written, lines), "{written}");
+    // The bounds are held behind the call.
+    assert!(!written.contains("=> percent"), "{written}");
 }

@@ -26,10 +26,8 @@ pub(super) struct Kept {
     pub(super) names: BTreeSet<Box<str>>,
     /// Those of them that cannot stay after all.
     pub(super) refused: BTreeSet<Box<str>>,
-    /// True if an instance can have initial values.
+    /// True if an instance can have initial values. Otherwise its calls give its inputs the values.
     pub(super) initial: bool,
-    /// True in the condition of an action. Writers keep the values that it reads, and they keep no members.
-    pub(super) in_condition: bool,
 }
 
 impl Kept {

@@ -8,8 +8,7 @@
 //!
 //! - A function block stays if it has a body and no chart, if its inputs, outputs and in-outs are of elementary types,
 //!   if its body names nothing of the file but constants and values of enumerations, and if others use nothing of its
-//!   instances but calls, inputs and outputs, these not in the conditions of actions. Each other one is taken apart, see
-//!   [`super`].
+//!   instances but calls, inputs and outputs. Each other one is taken apart, see [`super`].
 //! - The members and the body of a function block that stays are plain, like all else in the result.
 //! - A function block that stays stands behind those that it has instances of.
 
@@ -17,19 +16,19 @@ use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use super::base::{Composition, Kept};
-use super::kept::is_parameter;
+use super::kept::{is_parameter, is_written};
 use super::plain::{decomposed, without_locals};
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
-    Body, Composed, Document, Expr, ExprKind, Item, Literal, Path, Problem, Severity, Span, Stmt, StmtKind,
-    UnaryOp, VarDecl, VarKind, codes,
+    Body, Composed, Document, Expr, ExprKind, Item, Path, Problem, Severity, Span, Stmt, StmtKind, VarDecl,
+    VarKind, codes,
 };
 
 /// How often a document is looked through for function blocks that cannot stay; after that, all are taken apart.
 const ROUNDS: usize = 16;
 
 /// The document without structures, and without function blocks except those that can stay; if `initial`, their instances
-/// can have initial values. Tells what these do otherwise; all other problems are those of [`decomposed`], which the caller has
+/// can have initial values, otherwise their calls give these. Tells what these do otherwise; all other problems are those of [`decomposed`], which the caller has
 /// seen.
 pub fn with_blocks(document: &Document, initial: bool) -> (Cow<'_, Document>, Vec<Problem>) {
     let mut kept = candidates(document);
@@ -126,16 +125,7 @@ impl<'d> Known<'d> {
         let mut body = body.block().clone();
         body.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| visit_mut::expr(e, &mut names));
         visit_mut::stmts(&mut body.statements, &mut names);
-        names.fits && parameters.into_iter().all(plain) && all.all(|m| m.limits.is_none())
-    }
-}
-
-/// True for a literal, also with a sign.
-fn is_written(e: &Expr) -> bool {
-    match &e.kind {
-        ExprKind::Literal(_) => true,
-        ExprKind::Unary(UnaryOp::Neg, inner) => matches!(inner.kind, ExprKind::Literal(Literal::Int(..))),
-        _ => false,
+        names.fits && parameters.into_iter().all(plain) && all.all(|m| m.range().is_none())
     }
 }
 

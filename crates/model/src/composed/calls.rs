@@ -135,9 +135,9 @@ impl<'d> Composition<'d> {
     fn inlined(&mut self, spot: Spot<'d>, call: &Call<'_, 'd>, env: &Env<'_, 'd>) -> Option<Vec<Stmt>> {
         let Call { of, args, at } = *call;
         if self.kept.has(of)
-            && let Some(kind) = self.kept_call(&spot, of, args, env)
+            && let Some(list) = self.kept_call(&spot, (of, args, at), env)
         {
-            return Some(vec![Stmt { kind, at }]);
+            return Some(list);
         }
         if !self.takes(1 + args.len(), at.0) {
             return None;

@@ -200,8 +200,9 @@ impl<'d> Composition<'d> {
         own: &[(Expr, Expr)],
         env: &Env<'_, 'd>,
     ) -> Option<Vec<VarDecl>> {
-        // An element of an array of structures is no variable.
-        if !part.dimensions.is_empty() && self.kept.has(ty) {
+        // An element of an array of structures is no variable, and calls do not see the values of the whole one.
+        let given = !self.kept.initial && part.values.iter().any(Option::is_some);
+        if (given || !part.dimensions.is_empty()) && self.kept.has(ty) {
             self.kept.refuse(ty);
             return None;
         }

@@ -6,8 +6,21 @@
 use super::base::{Composition, Env, Segment, Spot};
 use super::declare::with_slot;
 use super::paths::{filled, member};
-use crate::{Arg, Composed, Expr, ExprKind, Name, Problem, Stmt, StmtKind, VarDecl, VarKind, codes, say};
+use crate::{
+    Arg, Composed, Expr, ExprKind, Name, Path, Place, Problem, Stmt, StmtKind, UnaryOp, VarDecl, VarKind,
+    codes, say,
+};
 
+/// True for a literal, also with a sign.
+pub(super) fn is_written(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::Literal(_) => true,
+        ExprKind::Unary(UnaryOp::Neg, inner) => matches!(inner.kind, ExprKind::Literal(_)),
+        _ => false,
+    }
+}
+
+/// True for an input or an output.
 pub(super) fn is_parameter(v: &VarDecl) -> bool {
     matches!(v.kind, VarKind::Input | VarKind::Output)
 }
@@ -21,7 +34,8 @@ impl<'d> Composition<'d> {
         decl: &'d VarDecl,
         segment: &Segment,
     ) -> Spot<'d> {
-        let reachable = is_parameter(decl) && !self.kept.in_condition && segment.index.is_empty();
+        let given = !self.kept.initial && is_given(&spot, &segment.name.text);
+        let reachable = is_parameter(decl) && segment.index.is_empty() && !given;
         match self.instance(&spot) {
             Some(instance) if reachable => spot = instance,
             _ => self.kept.refuse(of),
@@ -66,8 +80,8 @@ impl<'d> Composition<'d> {
         if !self.kept.has(of) {
             return None;
         }
-        let initial = self.kept.initial && v.array.is_none();
-        let given = |e: &Expr| initial && gives_parameters(of, e);
+        let initial = self.kept.initial;
+        let given = |e: &Expr| v.array.is_none() && gives(of, e, initial);
         let dimensions = v.array.as_ref().map_or(&[][..], |a| &a.dimensions);
         let indexes = self.indexes(dimensions, env);
         let (Some(indexes), true) = (indexes, v.init.as_ref().is_none_or(given)) else {
@@ -76,6 +90,7 @@ impl<'d> Composition<'d> {
         };
         let mut one =
             VarDecl { array: None, of: Some(Box::new(of.name.clone())), names: Vec::new(), ..v.clone() };
+        one.init = one.init.filter(|_| initial);
         one.init.iter_mut().for_each(|e| self.expr(e, env));
         let mut all = Vec::new();
         for name in &v.names {
@@ -96,39 +111,76 @@ impl<'d> Composition<'d> {
         Vec::new()
     }
 
-    /// The call of a function block that stays.
+    /// The call of a function block that stays. Outputs for variables with bounds are assigned behind it, because an
+    /// assignment holds the bounds.
     pub(super) fn kept_call(
         &mut self,
         spot: &Spot<'d>,
-        of: &'d Composed,
-        args: &[Arg],
+        (of, args, at): (&'d Composed, &[Arg], Place),
         env: &Env<'_, 'd>,
-    ) -> Option<StmtKind> {
+    ) -> Option<Vec<Stmt>> {
         let Some(instance) = self.instance(spot) else {
             self.kept.refuse(of);
             return None;
         };
-        let mut made = Vec::new();
+        let ExprKind::Path(path) = instance.kind() else { return None };
+        let (mut made, mut behind) = (Vec::new(), Vec::new());
+        if !self.kept.initial {
+            made.extend(fields(spot.decl).iter().cloned());
+        }
         for (n, arg) in args.iter().enumerate() {
             let (name, inout) = self.name_of_argument(of, n, arg)?;
+            if made.iter().any(|m| m.name.as_ref().is_some_and(|m| m.text == name.text)) {
+                // Before this call, the input has the initial value.
+                self.kept.refuse(of);
+            }
             let mut value = arg.value.clone();
             if arg.output || inout {
                 self.no_member_of_kept(&value, env);
+                let held = arg.output && self.has_limits(&value, env);
                 self.target(&mut value, env);
+                if held {
+                    let names = path.names.iter().chain([name]).cloned().collect();
+                    let output = Expr { kind: ExprKind::Path(Path { names }), at: value.at };
+                    behind.push(Stmt { kind: StmtKind::Assign { target: value, value: output }, at });
+                    continue;
+                }
             } else {
                 self.expr(&mut value, env);
             }
             let name = Name { text: name.text.clone(), at: value.at };
             made.push(Arg { name: Some(name), output: arg.output, value });
         }
-        let ExprKind::Path(path) = instance.kind() else { return None };
-        Some(StmtKind::Call(path, made))
+        behind.insert(0, Stmt { kind: StmtKind::Call(path, made), at });
+        Some(behind)
+    }
+
+    /// True if an expression is a variable that cannot have all values of its type.
+    fn has_limits(&mut self, e: &Expr, env: &Env<'_, 'd>) -> bool {
+        matches!(self.spot_of(e, env), Ok(Some(spot)) if spot.decl.limits.is_some())
     }
 }
 
-/// True if the initial values of an instance are those of its parameters.
-fn gives_parameters(of: &Composed, init: &Expr) -> bool {
+/// True if the initial values of an instance can be given: as values of its parameters if `initial`, else in each call, as
+/// inputs with a written value.
+fn gives(of: &Composed, init: &Expr, initial: bool) -> bool {
     let ExprKind::Call(path, fields) = &init.kind else { return false };
-    let parameter = |name: &Name| member(of, &name.text).is_some_and(is_parameter);
-    path.names.is_empty() && fields.iter().all(|f| f.name.as_ref().is_some_and(parameter))
+    let fits = |f: &Arg| {
+        let decl = f.name.as_ref().and_then(|n| member(of, &n.text)).filter(|d| is_parameter(d));
+        decl.is_some_and(|d| initial || d.kind == VarKind::Input && is_written(&f.value))
+    };
+    path.names.is_empty() && fields.iter().all(fits)
+}
+
+/// The initial values in the declaration of an instance.
+fn fields(instance: &VarDecl) -> &[Arg] {
+    match &instance.init {
+        Some(Expr { kind: ExprKind::Call(_, fields), .. }) => fields,
+        _ => &[],
+    }
+}
+
+/// True if the declaration of an instance gives a member its initial value.
+fn is_given(instance: &Spot<'_>, member: &str) -> bool {
+    fields(instance.decl).iter().any(|f| f.name.as_ref().is_some_and(|n| *n.text == *member))
 }

@@ -97,8 +97,7 @@ impl<'d> Composition<'d> {
     fn action(&mut self, action: &mut Action, env: &Env<'_, 'd>) {
         match &mut action.kind {
             ActionKind::Qualified { time, target, condition, .. } => {
-                time.iter_mut().for_each(|e| self.expr(e, env));
-                self.condition(condition, env);
+                time.iter_mut().chain(condition).for_each(|e| self.expr(e, env));
                 self.action_target(target, action.at.0, env);
             }
             ActionKind::OnEvent { event, work } => {
@@ -107,16 +106,10 @@ impl<'d> Composition<'d> {
             }
             ActionKind::EachScan { work, condition } => {
                 self.work(work, env);
-                self.condition(condition, env);
+                condition.iter_mut().for_each(|e| self.expr(e, env));
             }
             ActionKind::Order(_) | ActionKind::Comment(_) => {}
         }
-    }
-
-    fn condition(&mut self, condition: &mut Option<Expr>, env: &Env<'_, 'd>) {
-        self.kept.in_condition = true;
-        condition.iter_mut().for_each(|e| self.expr(e, env));
-        self.kept.in_condition = false;
     }
 
     fn action_target(&mut self, target: &mut Target, at: crate::Span, env: &Env<'_, 'd>) {

@@ -21,6 +21,8 @@ pub(super) enum Admits<'d> {
 pub(super) struct Var<'d> {
     pub(super) admits: Admits<'d>,
     pub(super) array: bool,
+    /// Of an instance of a function block of the file that stays, this.
+    of: Option<&'d str>,
     /// Of a constant with a written number, that.
     pub(super) number: Option<i128>,
 }
@@ -53,6 +55,8 @@ type Vars<'d> = HashMap<&'d str, Var<'d>>;
 pub(super) struct Scopes<'d> {
     file: Vars<'d>,
     charts: HashMap<&'d str, Vars<'d>>,
+    /// The members of the function blocks that stay.
+    blocks: HashMap<&'d str, Vars<'d>>,
     /// The variables with limits that have a direct address, by that.
     addresses: HashMap<String, Var<'d>>,
     pub(super) enumerations: HashMap<&'d str, Vec<(&'d Name, i128)>>,
@@ -65,6 +69,7 @@ impl<'d> Scopes<'d> {
         let mut made = Scopes {
             file: HashMap::new(),
             charts: HashMap::new(),
+            blocks: HashMap::new(),
             addresses: HashMap::new(),
             enumerations: HashMap::new(),
             values: HashMap::new(),
@@ -72,6 +77,10 @@ impl<'d> Scopes<'d> {
         for item in &document.items {
             match item {
                 Item::Type(t) => made.enumeration(t),
+                Item::Composed(c) => {
+                    let vars = made.blocks.entry(&*c.name.text).or_default();
+                    c.members.iter().chain(&c.inouts).for_each(|m| declare(vars, m));
+                }
                 Item::Var(v) => {
                     declare(&mut made.file, v);
                     made.place(v);
@@ -94,7 +103,7 @@ impl<'d> Scopes<'d> {
     fn place(&mut self, v: &'d VarDecl) {
         let address = v.address.as_ref().filter(|a| v.limits.is_some() && a.text.starts_with('%'));
         if let Some(address) = address {
-            let var = Var { admits: admits(v), array: false, number: None };
+            let var = Var { admits: admits(v), array: false, of: None, number: None };
             self.addresses.entry(normal_address(&address.text)).or_insert(var);
         }
     }
@@ -128,7 +137,7 @@ impl<'d> Scopes<'d> {
         }
         let own = around.chart.and_then(|c| self.charts.get(c)?.get(first)).or_else(|| self.file.get(first));
         if let Some(var) = own {
-            return Found::Var(*var, names.len() > 1);
+            return self.behind(*var, names.get(1..).unwrap_or_default());
         }
         match names {
             [value] => match self.values.get(&*value.text).map(Vec::as_slice) {
@@ -146,11 +155,30 @@ impl<'d> Scopes<'d> {
                     };
                 }
                 match self.charts.get(&*ty.text).and_then(|vars| vars.get(&*value.text)) {
-                    Some(var) => Found::Var(*var, names.len() > 2),
+                    Some(var) => self.behind(*var, names.get(2..).unwrap_or_default()),
                     None => Found::Other,
                 }
             }
             [] => Found::Other,
+        }
+    }
+
+    /// A variable, or what the names behind it mean.
+    fn behind(&self, var: Var<'d>, names: &[Name]) -> Found<'d> {
+        let members = var.of.and_then(|of| self.blocks.get(of));
+        let member = members.zip(names.first()).and_then(|(members, name)| members.get(&*name.text));
+        match member {
+            Some(member) => Found::Var(*member, names.len() > 1),
+            None => Found::Var(var, !names.is_empty()),
+        }
+    }
+
+    /// The enumeration of a parameter of the function block that a path calls.
+    pub(super) fn parameter(&self, instance: &Path, name: &Name, around: Around<'_>) -> Option<&'d str> {
+        let path = Path { names: instance.names.iter().chain([name]).cloned().collect() };
+        match self.find(&path, around) {
+            Found::Var(Var { admits: Admits::Values(ty), .. }, false) => Some(ty),
+            _ => None,
         }
     }
 
@@ -162,7 +190,8 @@ impl<'d> Scopes<'d> {
 
 fn declare<'d>(vars: &mut Vars<'d>, v: &'d VarDecl) {
     let number = v.init.as_ref().filter(|_| v.kind == VarKind::Const).and_then(|e| e.kind.whole());
-    let var = Var { admits: admits(v), array: v.array.is_some(), number };
+    let of = v.of.as_ref().map(|of| &*of.text);
+    let var = Var { admits: admits(v), array: v.array.is_some(), of, number };
     for name in &v.names {
         vars.entry(&*name.text).or_insert(var);
     }

@@ -106,12 +106,13 @@ impl Checker<'_> {
     fn statement(&mut self, s: &mut Stmt, around: Around<'_>) {
         match &mut s.kind {
             StmtKind::Assign { target, value } => self.assigned(target, value, around),
-            StmtKind::Call(_, args) => {
+            StmtKind::Call(path, args) => {
                 for arg in args {
+                    let wanted = arg.name.as_ref().and_then(|n| self.scopes.parameter(path, n, around));
                     if arg.output {
                         self.written(&mut arg.value, around);
                     } else {
-                        self.plain(&mut arg.value, around);
+                        self.expect(&mut arg.value, wanted, around);
                     }
                 }
             }
