@@ -351,8 +351,8 @@ post { lamp := drive.state = Mode.Slow }
     let written = text_of(&document(text));
     let lines = "FUNCTION_BLOCK Drive
         VAR_INPUT
-        wish : INT;
-        state : INT;
+        wish : INT := 0;
+        state : INT := 0;
         state := wish;
         6:
         speed := 90;
