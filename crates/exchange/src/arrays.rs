@@ -341,7 +341,7 @@ impl Visitor for Looking<'_, '_> {
         match &stmt.kind {
             StmtKind::Assign { target, .. } => self.whole(target, Use::Write),
             StmtKind::Call(_, args) => {
-                args.iter().filter(|a| a.output).for_each(|a| self.whole(&a.value, Use::Write));
+                args.iter().filter(|a| a.writes()).for_each(|a| self.whole(&a.value, Use::Write));
             }
             _ => {}
         }

@@ -221,9 +221,7 @@ fn singled(document: &Document, keeps: Keeps) -> (Document, Vec<Problem>) {
         unit.items.extend(document.items.iter().filter(|i| matches!(i, Item::Type(_))).cloned());
         let (unit, mut own) = singled(&unit, keeps);
         problems.append(&mut own);
-        let inouts: Vec<Box<str>> =
-            block.inouts.iter().flat_map(|i| &i.names).map(|n| n.text.clone()).collect();
-        *block = as_block(block, unit, |n| inouts.iter().any(|i| **i == *n));
+        *block = as_block(block, unit, |name| name);
     }
     (plain, problems)
 }

@@ -37,13 +37,13 @@ pub(crate) fn claim(path: &Path) -> Result<Sole, Failure> {
     }
 }
 
-/// True as long as someone has a file for itself.
+/// True while a program holds the lock of a file.
 pub(crate) fn is_taken(path: &Path) -> bool {
     let lock = File::open(beside(path));
     lock.is_ok_and(|lock| matches!(lock.try_lock(), Err(TryLockError::WouldBlock)))
 }
 
-/// Where the lock of a file stands.
+/// The path of the lock of a file.
 pub(crate) fn beside(path: &Path) -> PathBuf {
     let mut name = path.file_name().map_or_else(OsString::new, OsString::from);
     name.push(".lock");

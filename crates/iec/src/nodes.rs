@@ -83,11 +83,6 @@ impl Taken {
     }
 }
 
-/// A name without the index that it may have, and the index.
-pub(crate) fn bare(name: &str) -> (&str, &str) {
-    name.split_at(name.find('[').unwrap_or(name.len()))
-}
-
 /// An expression at a place.
 pub fn expr(kind: ExprKind, at: Span) -> Expr {
     Expr { kind, at: at.into() }
@@ -184,7 +179,7 @@ pub fn truth(e: &Expr) -> Option<bool> {
 
 /// `f(a, b)`.
 pub fn call(function: &str, args: Vec<Expr>, at: Span) -> Expr {
-    let args = args.into_iter().map(|value| Arg { name: None, output: false, value }).collect();
+    let args = args.into_iter().map(|value| Arg::input(None, value)).collect();
     expr(ExprKind::Call(path(&[function], at), args), at)
 }
 
@@ -200,7 +195,7 @@ pub fn when(condition: Expr, body: Vec<Stmt>, otherwise: Vec<Stmt>, at: Span) ->
 
 /// `block(a := x, b := y)`.
 pub fn invoke(block: Path, args: Vec<(&str, Expr)>, at: Span) -> Stmt {
-    let arg = |(n, value): (&str, Expr)| Arg { name: Some(Name::new(n, at)), output: false, value };
+    let arg = |(n, value): (&str, Expr)| Arg::input(Some(Name::new(n, at)), value);
     Stmt { kind: StmtKind::Call(block, args.into_iter().map(arg).collect()), at: at.into() }
 }
 

@@ -108,7 +108,7 @@ mod tests {
 
     fn args(names: &[(&str, Expr)]) -> Vec<Arg> {
         let named = |n: &str| (!n.is_empty()).then(|| Name::new(n, at()));
-        names.iter().map(|(n, e)| Arg { name: named(n), output: false, value: e.clone() }).collect()
+        names.iter().map(|(n, e)| Arg::input(named(n), e.clone())).collect()
     }
 
     fn join(op: BinaryOp, a: Expr, b: Expr) -> Expr {

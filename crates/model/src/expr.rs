@@ -76,8 +76,22 @@ pub struct Arg {
     pub name: Option<Name>,
     /// True for an output, `n => v`; then `value` is a path.
     pub output: bool,
+    /// True for a variable that the called function block can change. Only [`crate::composed`] knows and sets it.
+    pub inout: bool,
     /// The value.
     pub value: Expr,
+}
+
+impl Arg {
+    /// `value`, or `name := value`.
+    pub fn input(name: Option<Name>, value: Expr) -> Arg {
+        Arg { name, output: false, inout: false, value }
+    }
+
+    /// True if the call gives a variable a value by this argument.
+    pub fn writes(&self) -> bool {
+        self.output || self.inout
+    }
 }
 
 impl Expr {

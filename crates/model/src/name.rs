@@ -55,6 +55,11 @@ pub fn instance_of(name: &str) -> Option<(&str, Index<'_>)> {
     (!chart.is_empty()).then_some((chart, index))
 }
 
+/// A name without the index or the place of indexes that it may have, and these: `a` and `[2]` of `a[2]`.
+pub fn bare(name: &str) -> (&str, &str) {
+    name.split_at(name.find('[').unwrap_or(name.len()))
+}
+
 /// Takes the place of indexes off a name in the path of a member: `m` and 2 for `m[,]`, see
 /// [`crate::ExprKind::Element`].
 pub fn slot_of(name: &str) -> Option<(&str, usize)> {

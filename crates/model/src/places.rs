@@ -109,7 +109,7 @@ placeless! {
 structs! {
     Action { kind, at }
     Array { dimensions, at }
-    Arg { name, output, value }
+    Arg { name, output, inout, value }
     Arrivals { name, least, most, when, body, at }
     Binding { element, attribute, value }
     Block { locals, statements, at }

@@ -118,7 +118,8 @@ fn body(body: &mut Body, v: &mut impl Visitor) {
     }
 }
 
-fn block(block: &mut Block, v: &mut impl Visitor) {
+/// Visits the initial values of local variables, and the statements behind them.
+pub fn block(block: &mut Block, v: &mut impl Visitor) {
     block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| expr(e, v));
     stmts(&mut block.statements, v);
 }
@@ -138,7 +139,7 @@ fn stmt(s: &mut Stmt, v: &mut impl Visitor) {
         StmtKind::Call(p, args) => {
             v.path(p, Use::Call, at);
             for arg in args {
-                if arg.output {
+                if arg.writes() {
                     written(&mut arg.value, at, v);
                 } else {
                     expr(&mut arg.value, v);

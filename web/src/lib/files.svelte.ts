@@ -279,7 +279,7 @@ class Files {
     file.tag = await server.write(file.name, text, file.tag);
     file.saved = text;
     file.outside = null;
-    // Text typed meanwhile still needs its copy.
+    // The user may have typed while the file was saved: that text still needs its copy.
     if (!file.changed) void drafts.saved(file.name);
   }
 

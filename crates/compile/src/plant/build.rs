@@ -46,7 +46,7 @@ impl At {
 
     /// A function by its name, arguments by position.
     pub(super) fn call(self, function: &str, args: Vec<Expr>) -> Expr {
-        let args = args.into_iter().map(|value| Arg { name: None, output: false, value }).collect();
+        let args = args.into_iter().map(|value| Arg::input(None, value)).collect();
         self.expr(ExprKind::Call(Path { names: vec![self.name(function)] }, args))
     }
 

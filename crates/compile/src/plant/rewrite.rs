@@ -205,10 +205,7 @@ impl Rewrite<'_> {
                 }
             };
         }
-        let args: Vec<Arg> = args
-            .iter()
-            .map(|a| Arg { name: a.name.clone(), output: a.output, value: self.expr(&a.value) })
-            .collect();
+        let args: Vec<Arg> = args.iter().map(|a| Arg { value: self.expr(&a.value), ..a.clone() }).collect();
         if let ["random"] = names[..] {
             return self.random(at, args);
         }
@@ -295,10 +292,7 @@ impl Rewrite<'_> {
                     return;
                 }
                 self.called.extend(path.names.first().map(|n| n.text.clone()));
-                let args = args
-                    .iter()
-                    .map(|a| Arg { name: a.name.clone(), output: a.output, value: self.expr(&a.value) })
-                    .collect();
+                let args = args.iter().map(|a| Arg { value: self.expr(&a.value), ..a.clone() }).collect();
                 StmtKind::Call(path.clone(), args)
             }
             StmtKind::Assign { target, value } => {

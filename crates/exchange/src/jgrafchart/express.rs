@@ -442,6 +442,6 @@ fn equals(left: Expr, right: Literal, at: Span) -> Typed {
 
 fn call(name: &str, values: Vec<Expr>, at: Span) -> Expr {
     let path = Path { names: vec![Name::new(name, at)] };
-    let args = values.into_iter().map(|value| Arg { name: None, output: false, value }).collect();
+    let args = values.into_iter().map(|value| Arg::input(None, value)).collect();
     Expr { kind: ExprKind::Call(path, args), at: Place(at) }
 }

@@ -47,9 +47,9 @@ pub(super) struct Line(Arc<Mutex<Held>>);
 struct Held {
     stream: Stream,
     moved: Moved,
-    /// Longest time that a write may stand still.
+    /// How long a write may wait for the client to read.
     stall: Duration,
-    /// The end of that time, while a write stands still.
+    /// The moment at which a waiting write gives up; None if no write waits.
     end: Option<Pin<Box<Sleep>>>,
 }
 
@@ -64,7 +64,7 @@ impl Line {
 }
 
 impl Held {
-    /// A write that waits for the other end waits so long and no longer.
+    /// The result of a write. A write that has waited for too long ends with an error.
     fn wrote<T>(&mut self, cx: &mut Context<'_>, done: Poll<io::Result<T>>) -> Poll<io::Result<T>> {
         if done.is_ready() {
             self.end = None;
@@ -109,7 +109,7 @@ impl AsyncWrite for Line {
             Stream::Tls(stream) => Pin::new(stream.as_mut()).poll_flush(cx),
         };
         match done {
-            // Nothing that waited was sent by this, where nothing waited.
+            // No write waited, so this flush is no sign that the client reads.
             Poll::Ready(done) if held.end.is_none() => Poll::Ready(done),
             done => held.wrote(cx, done),
         }

@@ -153,7 +153,7 @@ impl Run {
             Kind::Input(member, path) => {
                 self.closed(at, say!("a call"));
                 if let Some(value) = self.need(at) {
-                    let arg = Arg { name: Some(member.clone()), output: false, value: value.expr };
+                    let arg = Arg::input(Some(member.clone()), value.expr);
                     self.put(StmtKind::Call(path.clone(), vec![arg]), at);
                     self.result = None;
                 }
@@ -377,5 +377,5 @@ fn leaf(value: &Expr, n: bool) -> Value {
 }
 
 fn positional(value: Expr) -> Arg {
-    Arg { name: None, output: false, value }
+    Arg::input(None, value)
 }

@@ -309,7 +309,7 @@ impl Run<'_> {
                         );
                     }
                     taken = true;
-                    Arg { name: input.names.first().cloned(), output: false, value: power.expr.clone() }
+                    Arg::input(input.names.first().cloned(), power.expr.clone())
                 }
                 _ => arg.clone(),
             })

@@ -9,7 +9,7 @@ use g7_model::{Arg, CaseArm, Expr, ExprKind, Name, Path, Said, Span, Stmt, StmtK
 use super::read::SectionKind;
 use super::tree::{self, Language, Xml, head, name_of};
 use super::units::{Meaning, Plan};
-use crate::nodes::{self, bare};
+use crate::nodes;
 use crate::report::Report;
 
 /// The most statements after calls have been replaced.
@@ -229,7 +229,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
     fn find(&self, names: &[Name], place: &Place) -> Found {
         let plain = || Found::Path(names.to_vec(), None);
         let Some(first) = names.first() else { return plain() };
-        let upper = bare(&first.text).0.to_uppercase();
+        let upper = g7_model::bare(&first.text).0.to_uppercase();
         if let Some(local) = place.locals.get(&upper) {
             let mut found = names.to_vec();
             if let Some(first) = found.first_mut() {
@@ -277,7 +277,7 @@ impl<'r, 'p, 'a> Coder<'r, 'p, 'a> {
             Meaning::Var(chart, name, ty) => {
                 let mut found: Vec<Name> = chart.as_ref().and_then(home).into_iter().collect();
                 // The index of an element of an array stands in the name: `d[i]`.
-                let index = names.get(k).map_or("", |n| bare(&n.text).1);
+                let index = names.get(k).map_or("", |n| g7_model::bare(&n.text).1);
                 found.push(Name::new(format!("{name}{index}"), at));
                 found.extend(rest());
                 Found::Path(found, *ty)

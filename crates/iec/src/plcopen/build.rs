@@ -328,7 +328,7 @@ fn flags(maker: &mut Maker, index: usize, vars: &[VarDecl]) -> (Vec<Stmt>, Optio
         match upper.as_str() {
             "SFCRESET" | "SFCINIT" => {
                 let reset = nodes::path(&["INITCHART"], at);
-                let arg = g7_model::Arg { name: None, output: false, value: nodes::name(&[&unit.chart], at) };
+                let arg = g7_model::Arg::input(None, nodes::name(&[&unit.chart], at));
                 let reset = Stmt { kind: StmtKind::Call(reset, vec![arg]), at: at.into() };
                 pre.push(nodes::when(nodes::name(&[&name.text], at), vec![reset], Vec::new(), at));
                 if upper == "SFCINIT" {

@@ -227,7 +227,7 @@ impl<'g, 'a, 'r> Net<'g, 'a, 'r> {
             if pin == "EN" {
                 enabled = Some(value);
             } else {
-                args.push(Arg { name: Some(Name::new(pin.as_str(), at)), output: false, value });
+                args.push(Arg::input(Some(Name::new(pin.as_str(), at)), value));
             }
         }
         let call = StmtKind::Call(Path { names: instance(object, at) }, args);
@@ -404,11 +404,8 @@ fn applied(function: &str, args: Vec<(String, Expr)>, at: Span) -> Expr {
             n.strip_prefix("IN").is_some_and(|rest| rest.chars().all(|c| c.is_ascii_digit())) || n.is_empty()
         }),
     };
-    let args = args.into_iter().map(|(n, value)| Arg {
-        name: (!by_place).then(|| Name::new(n.as_str(), at)),
-        output: false,
-        value,
-    });
+    let named = |n: String| (!by_place).then(|| Name::new(n.as_str(), at));
+    let args = args.into_iter().map(|(n, value)| Arg::input(named(n), value));
     signs::applied(function, args.collect(), at)
         .unwrap_or_else(|args| nodes::expr(ExprKind::Call(nodes::path(&[function], at), args), at))
 }

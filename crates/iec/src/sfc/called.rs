@@ -197,7 +197,7 @@ impl Calls<'_> {
             let Some((name, section)) = parameters.get(k).filter(|_| arg.name.is_none()) else {
                 return arg.clone();
             };
-            Arg { name: Some(name.clone()), output: *section == Section::Output, value: arg.value.clone() }
+            Arg { name: Some(name.clone()), output: *section == Section::Output, ..arg.clone() }
         });
         let instance = nodes::path(&[&own], at);
         let call = Stmt { kind: StmtKind::Call(instance, args.collect()), at: at.into() };

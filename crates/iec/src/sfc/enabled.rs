@@ -64,7 +64,7 @@ impl File {
 
     /// The type of the variable that a path names, in upper case. None if the file does not declare that type.
     pub(super) fn type_of<'t>(&'t self, names: &[Name], variables: &'t Types) -> Option<&'t String> {
-        let mut names = names.iter().map(|n| nodes::bare(&n.text).0.to_uppercase());
+        let mut names = names.iter().map(|n| g7_model::bare(&n.text).0.to_uppercase());
         let first = names.next().and_then(|n| variables.get(&n));
         names.fold(first, |of, member| self.members.get(of?)?.get(&member))
     }

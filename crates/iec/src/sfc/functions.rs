@@ -107,7 +107,7 @@ impl Omitted<'_> {
                 continue;
             }
             if let Some(value) = value.clone() {
-                args.push(Arg { name: Some(name.clone()).filter(|_| named), output: false, value });
+                args.push(Arg::input(Some(name.clone()).filter(|_| named), value));
             }
         }
     }
@@ -160,7 +160,7 @@ struct Written(HashSet<String>);
 impl Visitor for Written {
     fn path(&mut self, path: &mut Path, how: Use, _: Span) {
         if let Some(first) = path.names.first().filter(|_| how == Use::Write) {
-            self.0.insert(nodes::bare(&first.text).0.to_uppercase());
+            self.0.insert(g7_model::bare(&first.text).0.to_uppercase());
         }
     }
 }

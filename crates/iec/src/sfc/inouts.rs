@@ -95,7 +95,7 @@ impl Visitor for Uses<'_> {
         for n in 1..path.names.len() {
             let (before, behind) = path.names.split_at(n);
             let Some(of) = self.file.type_of(before, self.variables) else { continue };
-            let member = behind.first().map(|m| nodes::bare(&m.text).0.to_uppercase());
+            let member = behind.first().map(|m| g7_model::bare(&m.text).0.to_uppercase());
             let inout =
                 |(name, section): &(Name, Section)| *section == Section::InOut && Some(upper(name)) == member;
             if self.parameters.get(of).is_some_and(|all| all.iter().any(inout)) {

@@ -126,6 +126,6 @@ struct Names(HashSet<String>);
 
 impl Visitor for Names {
     fn path(&mut self, path: &mut Path, _: Use, _: Span) {
-        self.0.extend(path.names.first().map(|n| nodes::bare(&n.text).0.to_uppercase()));
+        self.0.extend(path.names.first().map(|n| g7_model::bare(&n.text).0.to_uppercase()));
     }
 }

@@ -6,7 +6,7 @@ use std::ops::Range;
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{Composed, Expr, Name, Nanos, Path, Qualifier, Span, Stmt};
 
-use crate::nodes::{self, Taken};
+use crate::nodes::Taken;
 use crate::st::{Types, Variable};
 
 /// The whole file.
@@ -180,7 +180,7 @@ pub(crate) struct Renamed<'n>(pub(crate) &'n HashMap<String, String>);
 impl Visitor for Renamed<'_> {
     fn path(&mut self, path: &mut Path, _: Use, _: Span) {
         let Some(first) = path.names.first_mut() else { return };
-        let (bare, index) = nodes::bare(&first.text);
+        let (bare, index) = g7_model::bare(&first.text);
         if let Some(own) = self.0.get(&bare.to_uppercase()) {
             first.text = format!("{own}{index}").into();
         }

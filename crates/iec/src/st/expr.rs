@@ -317,7 +317,7 @@ impl Parser<'_> {
         let output = self.ahead_is(1, "=>");
         if self.token().kind != Kind::Word || !assigned && !output {
             let tree = self.tree(1);
-            return Some((Arg { name: None, output: false, value: tree.expr }, tree.height));
+            return Some((Arg::input(None, tree.expr), tree.height));
         }
         let name = self.name(say!("an input"))?;
         self.bump();
@@ -326,7 +326,7 @@ impl Parser<'_> {
             return None;
         }
         let tree = self.tree(1);
-        Some((Arg { name: Some(name), output, value: tree.expr }, tree.height))
+        Some((Arg { output, ..Arg::input(Some(name), tree.expr) }, tree.height))
     }
 }
 

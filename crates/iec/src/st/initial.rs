@@ -99,7 +99,7 @@ impl Initial {
             Initial::Fields(fields) => {
                 let field = |(name, value): &(Name, Initial)| {
                     let value = value.one(at).unwrap_or_else(|| value.list(at));
-                    Arg { name: Some(name.clone()), output: false, value }
+                    Arg::input(Some(name.clone()), value)
                 };
                 let args = fields.iter().map(field).collect();
                 Some(Expr { kind: ExprKind::Call(Path { names: Vec::new() }, args), at })

@@ -9,7 +9,7 @@ use g7_model::{Chart, Composed, Document, Item, Name, Path, Type, VarDecl};
 pub struct Types<'d> {
     names: HashMap<&'d str, Named<'d>>,
     functions: HashMap<&'d str, Type>,
-    /// The function blocks of the file.
+    /// The function blocks of the file, by their names.
     blocks: HashMap<&'d str, &'d Composed>,
 }
 
@@ -65,34 +65,33 @@ impl<'d> Types<'d> {
                 Named::Of(ty) => Some(*ty),
                 Named::Instance(_) => None,
             },
-            [first, second] => match self.names.get(&*first.text) {
-                Some(Named::Of(Type::Fb(kind))) => kind.type_of(&second.text),
-                Some(Named::Instance(block)) => of_own(block, &second.text),
-                Some(Named::Of(_)) => None,
-                None if second.text.eq_ignore_ascii_case("X") => Some(Type::Bool),
-                None => Some(Type::Time),
-            },
+            [first, second] if self.names.contains_key(&*first.text) => self.of_member(first, &second.text),
+            [_, second] if second.text.eq_ignore_ascii_case("X") => Some(Type::Bool),
+            [_, _] => Some(Type::Time),
             _ => None,
         }
     }
 
-    /// The type of a parameter of the function block that a path calls.
-    pub(super) fn of_member(&self, instance: &Path, member: &str) -> Option<Type> {
-        let [name] = instance.names.as_slice() else { return None };
-        match self.names.get(&*name.text)? {
+    /// The type of a member of an instance.
+    fn of_member(&self, instance: &Name, member: &str) -> Option<Type> {
+        match self.names.get(&*instance.text)? {
             Named::Of(Type::Fb(kind)) => kind.type_of(member),
             Named::Of(_) => None,
-            Named::Instance(block) => of_own(block, member),
+            Named::Instance(block) => {
+                let named = |v: &&VarDecl| v.names.iter().any(|n| *n.text == *member);
+                block.members.iter().chain(&block.inouts).find(named).map(|v| v.ty)
+            }
         }
+    }
+
+    /// The type of a parameter of the function block that a path calls.
+    pub(super) fn of_parameter(&self, called: &Path, name: &str) -> Option<Type> {
+        let [instance] = called.names.as_slice() else { return None };
+        self.of_member(instance, name)
     }
 
     /// The type of the result of a function of the file.
     pub(super) fn of_function(&self, name: &str) -> Option<Type> {
         self.functions.get(name).copied()
     }
-}
-
-fn of_own(block: &Composed, name: &str) -> Option<Type> {
-    let named = |v: &&VarDecl| v.names.iter().any(|n| *n.text == *name);
-    block.members.iter().chain(&block.inouts).find(named).map(|v| v.ty)
 }

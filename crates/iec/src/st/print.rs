@@ -202,8 +202,8 @@ impl Writer<'_> {
     /// The bit of a variable that a path names.
     fn bit(&self, path: &Path) -> Option<Bit> {
         let (number, variable) = path.names.split_last()?;
-        let name = variable.iter().map(|n| &*n.text).collect::<Vec<_>>().join(".");
-        Bit::of(&name, self.types.of(variable)?, &number.text)
+        let ty = self.types.of(variable)?;
+        Bit::of(&Path { names: variable.to_vec() }.text(), ty, &number.text)
     }
 
     /// The bit of an element of an array.
@@ -401,7 +401,7 @@ impl Writer<'_> {
         let mut parts = Vec::new();
         for arg in args {
             let name = arg.name.as_ref().map_or("", |n: &Name| &n.text);
-            let value = match self.types.of_member(path, name) {
+            let value = match self.types.of_parameter(path, name) {
                 Some(ty) if !arg.output => self.value(&arg.value, ty),
                 _ => self.text(&arg.value).text,
             };

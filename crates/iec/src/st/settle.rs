@@ -10,7 +10,7 @@ use g7_model::{
     Name, Path, Stmt, StmtKind, Target, VarDecl, Work,
 };
 
-use crate::nodes::bare;
+use g7_model::bare;
 
 /// Gives every name in a document the spelling of its declaration.
 pub fn settle(document: &mut Document) {

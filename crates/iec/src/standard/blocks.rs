@@ -4,12 +4,12 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use g7_model::{Composed, Document, Expr, ExprKind, Item, Literal, Name, Problem, Type, UnaryOp, VarDecl};
+use g7_model::{Composed, Document, Expr, ExprKind, Literal, Name, Problem, Type, UnaryOp, VarDecl};
 
 use super::identifiers::Names;
 use crate::report::renamed;
 
-/// The new names of the function blocks of a document.
+/// The function blocks of a document, with the names that they and their members have in the written file.
 #[derive(Default)]
 pub(super) struct Blocks {
     types: BTreeMap<Box<str>, Renamed>,
@@ -25,7 +25,6 @@ pub(super) struct Renamed {
     members: HashMap<Box<str>, String>,
     /// The types of the members, by their new names.
     types: HashMap<String, Type>,
-    inouts: Vec<Box<str>>,
 }
 
 impl Renamed {
@@ -38,16 +37,6 @@ impl Renamed {
     pub(super) fn type_of(&self, new: &str) -> Option<Type> {
         self.types.get(new).copied()
     }
-
-    /// True for the name of an in-out, as the document has it.
-    pub(super) fn is_inout(&self, name: &str) -> bool {
-        self.inouts.iter().any(|i| **i == *name)
-    }
-
-    /// True for the new name of an in-out.
-    pub(super) fn is_new_inout(&self, name: &str) -> bool {
-        self.inouts.iter().any(|i| self.member(i) == Some(name))
-    }
 }
 
 impl Blocks {
@@ -55,10 +44,9 @@ impl Blocks {
     pub(super) fn of(document: &Document) -> Blocks {
         let mut names = Names::new(0);
         let mut made = Blocks::default();
-        for c in composed(document) {
+        for c in document.composed() {
             let name = names.give(None, &c.name, "", "");
-            let inouts = c.inouts.iter().flat_map(|i| &i.names).map(|n| n.text.clone()).collect();
-            made.types.insert(c.name.text.clone(), Renamed { name, inouts, ..Renamed::default() });
+            made.types.insert(c.name.text.clone(), Renamed { name, ..Renamed::default() });
         }
         made.changed = renamed(&names.renamed);
         made
@@ -109,11 +97,6 @@ impl Blocks {
             block.type_of(new).iter().for_each(|ty| typed(&mut field.value, *ty));
         }
     }
-}
-
-/// The function blocks of a document.
-pub(super) fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
-    document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None })
 }
 
 /// Gives a literal the form that a type needs, where no type is seen from its text.

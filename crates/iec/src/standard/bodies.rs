@@ -82,16 +82,13 @@ impl<'d> Lower<'d> {
     }
 
     pub(super) fn args(&mut self, args: &[Arg], at: &At<'d>) -> Vec<Arg> {
-        let arg = |a: &Arg| (a.name.clone(), a.output, a.value.clone());
-        let args: Vec<_> = args.iter().map(arg).collect();
-        args.into_iter()
-            .map(|(name, output, value)| {
-                if output {
-                    self.writes(&value, at);
-                }
-                Arg { name, output, value: self.expr(&value, at) }
-            })
-            .collect()
+        let one = |a: &Arg| {
+            if a.writes() {
+                self.writes(&a.value, at);
+            }
+            Arg { value: self.expr(&a.value, at), ..a.clone() }
+        };
+        args.iter().map(one).collect()
     }
 
     /// The value of a path.
@@ -147,7 +144,7 @@ impl<'d> Lower<'d> {
     }
 
     /// Notes what an assignment or an output of a call writes.
-    pub(super) fn writes(&mut self, target: &Expr, at: &At<'d>) {
+    fn writes(&mut self, target: &Expr, at: &At<'d>) {
         match &target.kind {
             ExprKind::Path(path) => self.note(path, true, at),
             ExprKind::Element(path, ..) => self.note(path, true, at),

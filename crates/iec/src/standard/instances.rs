@@ -62,8 +62,6 @@ impl<'d> Lower<'d> {
         };
         let of = self.block_of(key)?;
         self.note(path, true, at);
-        let inout = |a: &Arg| a.name.as_ref().is_some_and(|n| of.is_inout(&n.text));
-        args.iter().filter(|a| inout(a)).for_each(|a| self.writes(&a.value, at));
         let mut args = self.args(args, at);
         for name in args.iter_mut().filter_map(|a| a.name.as_mut()) {
             if let Some(new) = of.member(&name.text) {

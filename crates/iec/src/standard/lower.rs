@@ -56,9 +56,11 @@ pub(super) struct Lower<'d> {
     pub(super) final_scan: bool,
     /// True if step times count scans.
     pub(super) scan_clock: bool,
-    /// The variables that change behind the conditions of actions: actions or bodies of charts write them.
+    /// The variables that change behind the conditions of actions, since actions or bodies of charts write them, and the
+    /// instances that such bodies call.
     pub(super) moved: HashSet<VarKey<'d>>,
-    /// The copies of such variables that conditions read, and of members of such instances.
+    /// Conditions read copies of these from before all bodies: of each variable, or of a member of an instance, the name of
+    /// its copy.
     pub(super) copies: BTreeMap<(VarKey<'d>, Option<String>), String>,
     /// The counted time of each step, in scans or (true) in seconds.
     pub(super) counts: BTreeMap<(StepKey, bool), String>,

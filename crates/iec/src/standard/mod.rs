@@ -37,7 +37,7 @@ use g7_model::{Chart, Composed, Document, Item, Problem, Profile, ProfileName, c
 
 use crate::signs;
 
-use blocks::{Blocks, composed};
+use blocks::Blocks;
 pub(crate) use counts::LONGEST;
 use identifiers::Names;
 pub(crate) use idle::without_idle;
@@ -68,12 +68,12 @@ pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Proble
 /// known.
 fn function_blocks(document: &Document, form: Form, blocks: &mut Blocks) -> (Vec<Composed>, Vec<Problem>) {
     let (mut all, mut problems) = (Vec::new(), Vec::from_iter(blocks.take_changed()));
-    for c in composed(document) {
+    for c in document.composed() {
         let (made, mut own, names) = lowered(&unit(document, c), form, blocks);
         problems.append(&mut own);
         let name = blocks.named(&c.name);
         let Some(renamed) = blocks.enter(c, &names) else { continue };
-        all.push(Composed { name, ..as_block(c, made, |n| renamed.is_new_inout(n)) });
+        all.push(Composed { name, ..as_block(c, made, |n| renamed.member(n).unwrap_or(n)) });
     }
     (all, problems)
 }

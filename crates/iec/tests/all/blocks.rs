@@ -1,7 +1,7 @@
 //! Function blocks of the file in written files: which of them stay, and how they stand there.
 
 use g7_exchange::{Dialect, Written};
-use g7_model::{Document, FileId, Item, Severity};
+use g7_model::{Document, FileId, Severity};
 
 use crate::support;
 
@@ -40,7 +40,7 @@ fn document(text: &str) -> Document {
     document
 }
 
-/// The file with `Count` and a chart with this text.
+/// A document with the function block `Count`, its variables, and this text behind them.
 fn with_chart(chart: &str) -> Document {
     document(&format!("profile iec61131\n{COUNT}{chart}"))
 }
@@ -183,6 +183,14 @@ fn an_output_in_a_condition_is_that_from_before_the_bodies() {
     assert!(behind.contains("first.n > 3.0") && !behind.contains("before"), "{behind}");
 }
 
+/// The call changes the variable that an in-out stands for, as an output does.
+#[test]
+fn a_variable_of_an_in_out_is_written_by_the_call() {
+    let chart = "chart G { initial step 1 { N y if sum > 3  each scan: first(a, total := sum) } }\n";
+    let text = text_of(&with_chart(chart));
+    assert!(has(&text, "sum_before := sum;") && text.contains("sum_before > 3.0"), "{text}");
+}
+
 /// The generator of Beremiz leaves out the initial values of an instance, so its calls give these.
 #[test]
 fn calls_give_the_initial_values_of_inputs_for_matiec() {
@@ -211,9 +219,7 @@ fn calls_give_the_initial_values_of_inputs_for_matiec() {
 
 /// The names of the function blocks in a document.
 fn blocks(document: &Document) -> Vec<&str> {
-    let composed =
-        document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None });
-    composed.map(|c| &*c.name.text).collect()
+    document.composed().map(|c| &*c.name.text).collect()
 }
 
 #[test]

@@ -20,16 +20,17 @@ use super::kept::{is_parameter, is_written};
 use super::plain::{decomposed, without_locals};
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
-    Body, Composed, Document, Expr, ExprKind, Item, Path, Problem, Severity, Span, Stmt, StmtKind, VarDecl,
-    VarKind, codes,
+    Body, Composed, Document, Expr, ExprKind, Item, Path, Problem, Severity, Span, VarDecl, VarKind, bare,
+    codes,
 };
 
 /// How often a document is looked through for function blocks that cannot stay; after that, all are taken apart.
 const ROUNDS: usize = 16;
 
-/// The document without structures, and without function blocks except those that can stay; if `initial`, their instances
-/// can have initial values, otherwise their calls give these. Tells what these do otherwise; all other problems are those of [`decomposed`], which the caller has
-/// seen.
+/// The document without structures, and without function blocks except those that can stay. If `initial`, their instances
+/// keep their initial values; otherwise each call gives these.
+///
+/// The problems tell where the result runs otherwise. Those of [`decomposed`] are left out: the caller has seen them.
 pub fn with_blocks(document: &Document, initial: bool) -> (Cow<'_, Document>, Vec<Problem>) {
     let mut kept = candidates(document);
     for _ in 0..ROUNDS {
@@ -51,12 +52,13 @@ pub fn as_document(of: &Composed) -> Document {
     Document { items: variables.chain(body).collect(), notes: Vec::new() }
 }
 
-/// The function block that a document of [`as_document`] has become; `inout` tells the names of its in-outs.
-pub fn as_block(of: &Composed, document: Document, inout: impl Fn(&str) -> bool) -> Composed {
+/// The function block that a document of [`as_document`] has become; `new` tells the new name of a variable.
+pub fn as_block<'n>(of: &'n Composed, document: Document, new: impl Fn(&'n str) -> &'n str) -> Composed {
+    let given: HashSet<&str> = of.inouts.iter().flat_map(|i| &i.names).map(|n| new(&n.text)).collect();
     let (mut members, mut inouts, mut body) = (Vec::new(), Vec::new(), None);
     for item in document.items {
         match item {
-            Item::Var(v) if v.names.iter().any(|n| inout(&n.text)) => inouts.push(v),
+            Item::Var(v) if v.names.iter().any(|n| given.contains(&*n.text)) => inouts.push(v),
             Item::Var(v) => members.push(v),
             Item::Pre(own, _) => body = Some(own),
             _ => {}
@@ -70,15 +72,12 @@ fn candidates(document: &Document) -> BTreeSet<Box<str>> {
     let with_charts: BTreeSet<&str> =
         document.charts().filter_map(|c| c.block.as_ref()).map(|b| &*b.text).collect();
     let known = Known::of(document);
-    composed(document)
+    document
+        .composed()
         .filter(|c| c.block && !with_charts.contains(&*c.name.text))
         .filter(|c| known.fits(c))
         .map(|c| c.name.text.clone())
         .collect()
-}
-
-fn composed(document: &Document) -> impl Iterator<Item = &Composed> {
-    document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None })
 }
 
 /// The names of a file that a function block can use and stay: values of enumerations, and constants with a written
@@ -123,8 +122,7 @@ impl<'d> Known<'d> {
         let Some(body) = &of.body else { return false };
         let mut names = Names { own: own_names(of), known: self, fits: true };
         let mut body = body.block().clone();
-        body.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| visit_mut::expr(e, &mut names));
-        visit_mut::stmts(&mut body.statements, &mut names);
+        visit_mut::block(&mut body, &mut names);
         names.fits && parameters.into_iter().all(plain) && all.all(|m| m.range().is_none())
     }
 }
@@ -145,23 +143,13 @@ struct Names<'k, 'd> {
 
 impl Visitor for Names<'_, '_> {
     fn path(&mut self, path: &mut Path, how: Use, _: Span) {
-        let Some(first) = path.names.first().map(|n| bare(&n.text)) else { return };
+        let Some(first) = path.names.first().map(|n| bare(&n.text).0) else { return };
         self.fits &= self.own.contains(first) || self.known.has(first) && how == Use::Read;
     }
 
     fn expr(&mut self, e: &mut Expr) {
         self.fits &= !matches!(e.kind, ExprKind::Direct(_));
     }
-
-    fn stmt(&mut self, s: &mut Stmt) {
-        let StmtKind::For { var, .. } = &s.kind else { return };
-        self.fits &= self.own.contains(&var.text);
-    }
-}
-
-/// The name before the place of indexes, `a[]`.
-fn bare(text: &str) -> &str {
-    text.split_once('[').map_or(text, |(bare, _)| bare)
 }
 
 /// Puts the values of constants of the file in their places in a function block.
@@ -192,7 +180,7 @@ fn staying(document: &Document, kept: &Kept) -> Result<(Document, Vec<Problem>),
         return Err(kept.names.clone());
     }
     let mut units = Units {
-        types: composed(document).map(|c| (&*c.name.text, c)).collect(),
+        types: document.composed().map(|c| (&*c.name.text, c)).collect(),
         enumerations: document.items.iter().filter(|i| matches!(i, Item::Type(_))).collect(),
         kept,
         known: Known::of(document),
@@ -233,7 +221,7 @@ impl Plain {
         };
         made.kept.clone_from(kept);
         let plain = made.walked(&own);
-        let used = composed(document).map(|c| &c.name.text);
+        let used = document.composed().map(|c| &c.name.text);
         let used = used.filter(|n| made.kept.names.contains(*n) && made.used.contains(&***n));
         let wrong = made.problems.iter().any(|p: &Problem| p.severity() == Severity::Error);
         let used = used.cloned().collect();
@@ -269,8 +257,7 @@ impl<'d> Units<'d> {
             return;
         }
         unit.used.iter().for_each(|inner| self.add(inner, refused));
-        let inouts: HashSet<&str> = of.inouts.iter().flat_map(|i| &i.names).map(|n| &*n.text).collect();
-        self.made.push(as_block(of, unit.document, |n| inouts.contains(n)));
+        self.made.push(as_block(of, unit.document, |name| name));
     }
 
     /// The function block as a document with the types of its variables.
@@ -287,12 +274,7 @@ impl<'d> Units<'d> {
         if let Some(body) = &mut own.body {
             // The constants stand in the statements, whatever language shows these.
             let mut block = body.block().clone();
-            block
-                .locals
-                .iter_mut()
-                .filter_map(|l| l.init.as_mut())
-                .for_each(|e| visit_mut::expr(e, &mut constants));
-            visit_mut::stmts(&mut block.statements, &mut constants);
+            visit_mut::block(&mut block, &mut constants);
             *body = Body::St(block);
         }
         let types = self.within(of);

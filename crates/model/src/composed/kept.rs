@@ -58,8 +58,8 @@ impl<'d> Composition<'d> {
         }
     }
 
-    /// One instance of a function block that stays; None for an array of such, for an element that an index chooses while
-    /// the chart runs, and for a part of another instance. An element is a variable of its own, `valve[3]`.
+    /// The variable of one instance of a function block that stays: of an element of an array, `valve[3]`. None for a whole
+    /// array, for an element whose index is computed, and for an instance within another one.
     fn instance(&mut self, spot: &Spot<'d>) -> Option<Spot<'d>> {
         if let Some((outer, _)) = &spot.within {
             self.kept.refuse(outer);
@@ -74,8 +74,8 @@ impl<'d> Composition<'d> {
         Some(Spot { text, own: Vec::new(), ..spot.clone() })
     }
 
-    /// The declarations of a variable that stays an instance of a function block, or of an array of such: one for each. None
-    /// if its type is taken apart, as it is then everywhere.
+    /// The declarations of a variable whose type is a function block that stays: one, or for an array one for each element.
+    /// None if the type does not stay.
     pub(super) fn stay(&mut self, of: &'d Composed, v: &VarDecl, env: &Env<'_, 'd>) -> Option<Vec<VarDecl>> {
         if !self.kept.has(of) {
             return None;
@@ -101,7 +101,7 @@ impl<'d> Composition<'d> {
         Some(all)
     }
 
-    /// The statements for an index of a call outside of all instances: none, which is another thing than the fault here.
+    /// The statements for an index of a call outside of the bounds: none. Tells of it, because here it is a fault.
     pub(super) fn nothing_outside(&mut self, spot: &Spot<'d>) -> Vec<Stmt> {
         let what = say!(
             "an index outside of the bounds of `{}` is a fault here, and there nothing is called",
@@ -149,7 +149,7 @@ impl<'d> Composition<'d> {
                 self.expr(&mut value, env);
             }
             let name = Name { text: name.text.clone(), at: value.at };
-            made.push(Arg { name: Some(name), output: arg.output, value });
+            made.push(Arg { name: Some(name), output: arg.output, inout, value });
         }
         behind.insert(0, Stmt { kind: StmtKind::Call(path, made), at });
         Some(behind)

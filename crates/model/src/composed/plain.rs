@@ -42,6 +42,13 @@ pub(super) fn without_locals(document: &Document) -> Cow<'_, Document> {
     Cow::Owned(own)
 }
 
+impl Document {
+    /// The structures and function blocks, in the order of the text.
+    pub fn composed(&self) -> impl Iterator<Item = &Composed> {
+        self.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None })
+    }
+}
+
 impl VarDecl {
     /// True for an instance of a function block of the file, in a document where [`super::with_blocks`] has left
     /// no other types of the file.

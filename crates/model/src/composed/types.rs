@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use super::base::{Composition, MOST};
-use crate::{Composed, Document, Item, Name, Problem, Span, Type, VarDecl, codes, say};
+use crate::{Composed, Document, Name, Problem, Span, Type, VarDecl, codes, say};
 
 /// How deep types can stand in each other.
 pub const DEEP: usize = 64;
@@ -11,8 +11,7 @@ pub const DEEP: usize = 64;
 impl<'d> Composition<'d> {
     /// Collects the types. A type that is wrong as such has no members for what follows.
     pub(super) fn types(&mut self, document: &'d Document) {
-        let composed =
-            || document.items.iter().filter_map(|i| if let Item::Composed(c) = i { Some(c) } else { None });
+        let composed = || document.composed();
         for c in composed().filter(|c| !c.name.text.is_empty()) {
             let name = &c.name.text;
             if let Some(problem) = of_language(&c.name) {

@@ -48,7 +48,7 @@ impl Checks {
         };
         let place = value.at;
         let path = Path { names: vec![Name { text: name.text, at: place }] };
-        Expr { kind: ExprKind::Call(path, vec![Arg { name: None, output: false, value }]), at: place }
+        Expr { kind: ExprKind::Call(path, vec![Arg::input(None, value)]), at: place }
     }
 
     /// Makes a function that returns its argument, or ends the scan with the fault `range`:
@@ -122,7 +122,7 @@ impl Make {
 
     fn call(&self, name: &str, values: Vec<Expr>) -> Expr {
         let path = Path { names: vec![Name { text: name.into(), at: self.0 }] };
-        let args = values.into_iter().map(|value| Arg { name: None, output: false, value }).collect();
+        let args = values.into_iter().map(|value| Arg::input(None, value)).collect();
         self.expr(ExprKind::Call(path, args))
     }
 }

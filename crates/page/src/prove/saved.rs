@@ -213,7 +213,7 @@ fn meanwhile(holds: Expr, a: &Expr, b: &Expr, begins_here: bool) -> Expr {
 fn at_most(most: u32, list: &[Expr]) -> Expr {
     let one = |e: &Expr| {
         let name = Name { text: "BOOL_TO_INT".into(), at: Place::default() };
-        let arg = g7_model::Arg { name: None, output: false, value: e.clone() };
+        let arg = g7_model::Arg::input(None, e.clone());
         expr(ExprKind::Call(Path { names: vec![name] }, vec![arg]))
     };
     let count = join(BinaryOp::Add, list.iter().map(one)).unwrap_or_else(|| value(g7_model::Type::Int, &[0]));

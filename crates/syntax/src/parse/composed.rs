@@ -172,7 +172,7 @@ impl Parser<'_> {
             let name = Some(self.name(say!("the name of a member")));
             self.assign_sign();
             let value = if self.at(Tok::LBracket) { self.list() } else { self.value_or_fields() };
-            fields.push(Arg { name, output: false, value });
+            fields.push(Arg::input(name, value));
             if !self.eat(Tok::Comma) {
                 break;
             }

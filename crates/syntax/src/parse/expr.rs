@@ -533,7 +533,7 @@ impl Parser<'_> {
                     say!("write the name of a variable"),
                 );
             }
-            args.push(Arg { name, output, value: value.expr });
+            args.push(Arg { output, ..Arg::input(name, value.expr) });
             if !self.eat(Tok::Comma) {
                 break;
             }

@@ -29,7 +29,7 @@ pub(crate) struct Owner {
     pub(crate) window: String,
 }
 
-/// The windows that are there.
+/// The open windows.
 #[derive(Debug)]
 pub(crate) struct Owners {
     folder: PathBuf,
@@ -40,7 +40,7 @@ pub(crate) struct Owners {
     left: AtomicBool,
 }
 
-/// A window that is there until this is dropped.
+/// An open window; it counts as closed when this is dropped.
 #[derive(Debug)]
 pub(crate) struct Seat {
     owners: Arc<Owners>,
@@ -60,12 +60,12 @@ impl Owners {
         }
     }
 
-    /// The name of this server, for others to ask about.
+    /// The name of this server. Other servers of the folder ask by it whether this one still runs.
     pub(super) fn server(&self) -> &str {
         &self.server
     }
 
-    /// Shows other servers of the folder that this one is there; the folder exists.
+    /// Takes the lock that tells other servers of the folder that this one runs. The folder must exist.
     pub(super) fn show(&self) {
         self.lock.get_or_init(|| {
             self.sweep();
@@ -73,13 +73,14 @@ impl Owners {
         });
     }
 
-    /// A window has come.
+    /// Counts a window as open until the result is dropped.
     pub(crate) fn enter(self: &Arc<Owners>, owner: Owner) -> Seat {
         *self.windows().entry(owner.clone()).or_default() += 1;
         Seat { owners: Arc::clone(self), owner }
     }
 
-    /// True if the window is there that wrote something through a server.
+    /// True if a window is open on this server, or if the other server through which it wrote still runs: its windows are not
+    /// known here, so they count as open.
     pub(super) fn is_there(&self, owner: &Owner, server: &str) -> bool {
         if self.windows().contains_key(owner) {
             return true;
@@ -88,7 +89,7 @@ impl Owners {
         !server.is_empty() && plain && server != self.server && sole::is_taken(&self.folder.join(server))
     }
 
-    /// True once after a window has left.
+    /// True if a window was closed since this was asked last.
     pub(super) fn has_left(&self) -> bool {
         self.left.swap(false, Ordering::Relaxed)
     }
@@ -97,7 +98,7 @@ impl Owners {
         self.windows.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Deletes the locks that killed servers have left.
+    /// Deletes the lock files of servers that were killed.
     fn sweep(&self) {
         for entry in fs::read_dir(&self.folder).into_iter().flatten().flatten() {
             let path = entry.path();

@@ -34,7 +34,7 @@ impl Server {
         live
     }
 
-    /// Waits until a window has left.
+    /// Waits until the server has noticed that a window was closed.
     async fn has_left(&self, asks: &str) {
         while seen(self, asks).await.iter().any(|(_, holder)| holder == "other") {
             tokio::time::sleep(Duration::from_millis(20)).await;

@@ -235,7 +235,7 @@ fn member(index: impl Strategy<Value = Expr>) -> impl Strategy<Value = Expr> {
 /// The values of a structure.
 pub(crate) fn fields() -> impl Strategy<Value = Expr> {
     let value = prop_oneof![3 => expr().boxed(), 1 => values().boxed()];
-    let field = (name(), value).prop_map(|(name, value)| Arg { name: Some(name), output: false, value });
+    let field = (name(), value).prop_map(|(name, value)| Arg::input(Some(name), value));
     prop::collection::vec(field, 1..3)
         .prop_map(|fields| of(ExprKind::Call(Path { names: Vec::new() }, fields)))
 }
@@ -247,10 +247,9 @@ pub(crate) fn values() -> impl Strategy<Value = Expr> {
 }
 
 pub(crate) fn args(value: impl Strategy<Value = Expr>) -> impl Strategy<Value = Vec<Arg>> {
-    let plain =
-        (prop::option::of(name()), value).prop_map(|(name, value)| Arg { name, output: false, value });
-    let output =
-        (name(), path()).prop_map(|(n, p)| Arg { name: Some(n), output: true, value: of(ExprKind::Path(p)) });
+    let plain = (prop::option::of(name()), value).prop_map(|(name, value)| Arg::input(name, value));
+    let output = (name(), path())
+        .prop_map(|(n, p)| Arg { output: true, ..Arg::input(Some(n), of(ExprKind::Path(p))) });
     prop::collection::vec(prop_oneof![3 => plain, 1 => output], 0..4)
 }
 
