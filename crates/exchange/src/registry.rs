@@ -141,7 +141,8 @@ pub static FORMATS: [Format; 9] = [
         reader: Some(sfc::import),
         writer: Some(sfc::export),
         in_dialect: None,
-        keeps: Keeps::Blocks { initial: true },
+        // The standard has no initial values of a function block in VAR_GLOBAL (2003, B.1.4.3), and matiec refuses them.
+        keeps: Keeps::Blocks { initial: false },
     },
     // A flowchart in the text of Mermaid, for documents.
     Format {

@@ -19,6 +19,9 @@ const FUNCTIONS: &str = "ABS ACOS ADD ASIN ATAN CONCAT COS CTD CTU CTUD DELETE D
 LEFT LEN LIMIT LN LOG LT MAX MID MIN MOVE MUL MUX NE REPLACE RIGHT ROL ROR RS R_TRIG SEL SHL SHR SIN SQRT \
 SR SUB TAN TOF TON TP TRUNC";
 
+/// The function blocks of Annex F of the standard (2003), which matiec has in its library.
+const EXAMPLES: &str = "DERIVATIVE HYSTERESIS INTEGRAL PID RAMP RTC SEMA";
+
 /// Words with a meaning in their own places: operators of Instruction List, qualifiers, formal
 /// parameters of function blocks and tasks. Some compilers refuse them anywhere.
 const IN_PLACES: &str = "ANDN CAL CALC CALCN CD CLK CU CV D DS ET IN INTERVAL JMP JMPC JMPCN L LD LDN N NEG ORN P P0 P1 \
@@ -41,10 +44,15 @@ pub fn everywhere() -> impl Iterator<Item = &'static str> {
     EVERYWHERE.split_whitespace()
 }
 
+/// The words that no program for matiec may give to anything.
+pub(crate) fn of_matiec() -> impl Iterator<Item = &'static str> {
+    everywhere().chain(EXAMPLES.split_whitespace())
+}
+
 /// True if a word in upper case is the name of a standard function or function block, which matiec takes as the
 /// name of a step, but not of a variable.
 pub(crate) fn is_function(upper: &str) -> bool {
-    FUNCTIONS.split_whitespace().any(|word| word == upper)
+    FUNCTIONS.split_whitespace().chain(EXAMPLES.split_whitespace()).any(|word| word == upper)
 }
 
 /// True if a word, in any case, has a meaning of its own somewhere in the standard.

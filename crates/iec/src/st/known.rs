@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, Composed, Document, Item, Name, Path, Type, VarDecl};
+use g7_model::{Chart, Composed, Document, Function, Item, Name, Path, Type, VarDecl};
 
 /// The types of names.
 #[derive(Debug, Default)]
 pub struct Types<'d> {
     names: HashMap<&'d str, Named<'d>>,
-    functions: HashMap<&'d str, Type>,
+    functions: HashMap<&'d str, &'d Function>,
     /// The function blocks of the file, by their names.
     blocks: HashMap<&'d str, &'d Composed>,
 }
@@ -27,7 +27,7 @@ impl<'d> Types<'d> {
         let mut types = Types::default();
         for item in &document.items {
             match item {
-                Item::Function(f) => _ = types.functions.insert(&f.name.text, f.result),
+                Item::Function(f) => _ = types.functions.insert(&f.name.text, f),
                 Item::Composed(c) => _ = types.blocks.insert(&c.name.text, c),
                 _ => {}
             }
@@ -90,8 +90,8 @@ impl<'d> Types<'d> {
         self.of_member(instance, name)
     }
 
-    /// The type of the result of a function of the file.
-    pub(super) fn of_function(&self, name: &str) -> Option<Type> {
+    /// A function of the file.
+    pub(super) fn function(&self, name: &str) -> Option<&'d Function> {
         self.functions.get(name).copied()
     }
 }

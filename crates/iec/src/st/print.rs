@@ -5,8 +5,8 @@
 //! number, a conversion is written.
 
 use g7_model::{
-    Arg, BinaryOp, Expr, ExprKind, Holds, Literal, Name, Operands, Path, StandardFunction, Stmt, StmtKind,
-    Type, UnaryOp,
+    Arg, BinaryOp, Expr, ExprKind, Function, Holds, Literal, Name, Operands, Path, StandardFunction, Stmt,
+    StmtKind, Type, UnaryOp,
 };
 
 use super::bits::{self, Bit};
@@ -236,7 +236,7 @@ impl Writer<'_> {
             return shift;
         }
         let name = path.text();
-        let own = self.types.of_function(&name);
+        let own = self.types.function(&name);
         let texts: Vec<Text> = args.iter().map(|a| self.text(&a.value)).collect();
         let common = texts.iter().fold(Ty::Whole, |all, t| match (all, t.ty) {
             (Ty::Known(a), Ty::Known(b)) if counts(a) && counts(b) && a.is_bits() == b.is_bits() => {
@@ -248,13 +248,14 @@ impl Writer<'_> {
         let upper = name.to_ascii_uppercase();
         let alike = matches!(upper.as_str(), "MIN" | "MAX" | "LIMIT" | "SEL");
         let ty = match own {
-            Some(ty) => Ty::Known(ty),
+            Some(own) => Ty::Known(own.result),
             None => standard_type(&upper, common),
         };
         let mut parts = Vec::new();
-        for (arg, text) in args.iter().zip(texts) {
-            let text = match common {
-                Ty::Known(t) if alike && counts(t) => text.converted(t).text,
+        for (place, (arg, text)) in args.iter().zip(texts).enumerate() {
+            let text = match (own.and_then(|f| parameter(f, place, arg)), common) {
+                (Some(ty), _) => self.value(&arg.value, ty),
+                (None, Ty::Known(t)) if alike && counts(t) => text.converted(t).text,
                 _ => text.text,
             };
             parts.push(match &arg.name {
@@ -274,7 +275,7 @@ impl Writer<'_> {
             standard,
             StandardFunction::Shl | StandardFunction::Shr | StandardFunction::Rol | StandardFunction::Ror
         );
-        if !shifts || self.types.of_function(&path.text()).is_some() {
+        if !shifts || self.types.function(&path.text()).is_some() {
             return None;
         }
         let place = |a: &Arg, k: usize| a.name.as_ref().map_or(Some(k), |n| standard.row().place(&n.text));
@@ -448,6 +449,15 @@ fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
         (Ty::Known(t), _) | (_, Ty::Known(t)) => (left, right, Ty::Known(t)),
         (a, _) => (left, right, a),
     }
+}
+
+/// The type of the parameter of a function of the file that an argument is for.
+fn parameter(function: &Function, place: usize, arg: &Arg) -> Option<Type> {
+    let found = match &arg.name {
+        Some(name) => function.params.iter().find(|p| p.name.text.eq_ignore_ascii_case(&name.text)),
+        None => function.params.get(place),
+    };
+    found.map(|p| p.ty)
 }
 
 /// The type of the result of a standard function.

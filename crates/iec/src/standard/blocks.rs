@@ -2,7 +2,7 @@
 //!
 //! Each is rewritten as a document of its own. The rest of the document uses it by the new names of its parameters.
 
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use g7_model::{Composed, Document, Expr, ExprKind, Literal, Name, Problem, Type, UnaryOp, VarDecl};
 
@@ -40,9 +40,9 @@ impl Renamed {
 }
 
 impl Blocks {
-    /// Gives each function block its name. Those of members follow in [`Blocks::enter`].
-    pub(super) fn of(document: &Document) -> Blocks {
-        let mut names = Names::new(0);
+    /// Gives each function block its name, which is none of these words. Those of members follow in [`Blocks::enter`].
+    pub(super) fn of(document: &Document, reserved: HashSet<&'static str>) -> Blocks {
+        let mut names = Names::new(0, reserved);
         let mut made = Blocks::default();
         for c in document.composed() {
             let name = names.give(None, &c.name, "", "");

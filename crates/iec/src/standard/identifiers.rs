@@ -44,9 +44,10 @@ pub(super) struct Names {
 pub(super) type Owner = Option<usize>;
 
 impl Names {
-    pub(super) fn new(programs: usize) -> Names {
+    /// No names yet, for a document with so many programs, none of which may have one of these words.
+    pub(super) fn new(programs: usize, reserved: HashSet<&'static str>) -> Names {
         Names {
-            reserved: crate::words::everywhere().collect(),
+            reserved,
             global: HashSet::new(),
             programs: vec![HashSet::new(); programs],
             vars: HashMap::new(),

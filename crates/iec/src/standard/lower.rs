@@ -11,6 +11,7 @@ use super::blocks::Blocks;
 use super::identifiers::Names;
 use crate::report::renamed;
 use crate::scopes::{Ref, Scopes, StepKey, VarKey};
+use crate::words;
 
 /// The deepest nesting of macro-steps.
 pub(super) const DEEPEST: usize = 20;
@@ -29,6 +30,14 @@ pub(crate) enum Form {
 }
 
 impl Form {
+    /// The words that nothing may be called.
+    pub(super) fn words(self) -> HashSet<&'static str> {
+        match self {
+            Form::Codesys { .. } => words::everywhere().collect(),
+            Form::Networks { .. } | Form::Charts => words::of_matiec().collect(),
+        }
+    }
+
     /// True if expansions stand in line, in networks of one program.
     pub(super) fn in_line(self) -> bool {
         matches!(self, Form::Networks { .. })
@@ -150,7 +159,7 @@ impl<'d> Lower<'d> {
             document,
             form,
             blocks,
-            names: Names::new(0),
+            names: Names::new(0, form.words()),
             programs: Vec::new(),
             heads: Vec::new(),
             units: Vec::new(),
@@ -187,7 +196,7 @@ impl<'d> Lower<'d> {
             scopes,
         };
         lower.divide();
-        lower.names = Names::new(lower.heads.len());
+        lower.names = Names::new(lower.heads.len(), form.words());
         lower.new_vars = vec![Vec::new(); lower.heads.len()];
         lower.name();
         lower.driven_by = lower.drives();

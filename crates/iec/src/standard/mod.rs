@@ -53,7 +53,7 @@ pub(crate) fn without_steps(chart: &Chart) -> Option<Problem> {
 /// Rewrites a document; returns it with the problems of what it does not carry.
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
     let document = &signs::in_signs(document);
-    let mut blocks = Blocks::of(document);
+    let mut blocks = Blocks::of(document, form.words());
     let (made, mut problems) = function_blocks(document, form, &mut blocks);
     let (mut out, mut own, mut names) = lowered(document, form, &blocks);
     out.items.splice(1..1, made.into_iter().map(Item::Composed));
