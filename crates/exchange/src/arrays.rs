@@ -7,7 +7,8 @@
 //! `a[2]` becomes `a_2`, because an action of the standard drives a variable and no element. An array of which an
 //! element is chosen while the chart runs (`a[i]`), or that is copied as a whole, is open: a format with arrays gets it
 //! as an array, and its elements that actions drive as single variables, which a `post` copies into it. For a format
-//! without arrays such an element stays as it is, so that the writer reports it at its place.
+//! without arrays such an element stays as it is, so that the writer reports it at its place. The arrays of a variable with
+//! a structure stay all together, so that it can stay one variable there (see [`g7_model::composed::with_blocks`]).
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap, HashSet};
@@ -78,6 +79,9 @@ struct Single<'d> {
     arrays: HashMap<VarKey<'d>, Elements>,
     /// The arrays that stay.
     open: HashSet<VarKey<'d>>,
+    /// The variables with a structure whose members are variables of their own there, by their names in the names of
+    /// members.
+    apart: HashSet<VarKey<'d>>,
     locals: Locals<'d>,
     /// The chart that is being rewritten.
     chart: Option<usize>,
@@ -89,10 +93,13 @@ impl<'d> Single<'d> {
         let mut locals = Locals::default();
         locals.document(document);
         let scopes = Scopes::new(document);
-        let (arrays, open, problems) = (HashMap::new(), HashSet::new(), Vec::new());
-        let mut made = Single { scopes, arrays, open, locals, chart: None, problems };
+        let (arrays, open, apart) = (HashMap::new(), HashSet::new(), HashSet::new());
+        let mut made = Single { scopes, arrays, open, apart, locals, chart: None, problems: Vec::new() };
         let uses = if keeps { made.uses(document) } else { Uses::default() };
-        made.open = uses.chosen;
+        made.open.clone_from(&uses.chosen);
+        if keeps {
+            made.keep_structures(document, &uses);
+        }
         let mut taken: HashSet<String> =
             variables(document).flat_map(|(_, v)| &v.names).map(|n| n.text.to_lowercase()).collect();
         for (chart, v) in variables(document) {
@@ -104,6 +111,8 @@ impl<'d> Single<'d> {
                 let mut own = indexes.clone();
                 if open {
                     own.retain(|i| uses.driven.contains(&(key, i.clone())));
+                }
+                if uses.chosen.contains(&key) {
                     made.tell(v, name, !own.is_empty() && uses.written.contains(&key));
                 }
                 let elements = own.into_iter().map(|i| (i.clone(), free(&name.text, &i, &mut taken)));
@@ -112,6 +121,24 @@ impl<'d> Single<'d> {
         }
         made.chart = None;
         made
+    }
+
+    /// Lets the arrays of variables with a structure stay, as far as the structure can: actions drive none of their elements,
+    /// and no statement names a member of all elements at once.
+    fn keep_structures(&mut self, document: &'d Document, uses: &Uses<'d>) {
+        let driven: HashSet<VarKey> = uses.driven.iter().map(|(key, _)| *key).collect();
+        let mut arrays = Vec::new();
+        for (chart, v) in variables(document).filter(|(_, v)| v.part_of.is_some() && v.array.is_some()) {
+            let chart = chart.and_then(|c| self.scopes.chart_named(c));
+            for key in v.names.iter().map(|n| (chart, &*n.text)) {
+                if driven.contains(&key) || uses.whole.contains(&key) && key.1.contains(']') {
+                    self.apart.insert((chart, root(key.1)));
+                }
+                arrays.push(key);
+            }
+        }
+        let stays = |key: &VarKey<'d>| !self.apart.contains(&(key.0, root(key.1)));
+        self.open.extend(arrays.into_iter().filter(stays));
     }
 
     /// Tells what is different for an array that stays.
@@ -217,6 +244,9 @@ impl<'d> Single<'d> {
     /// The declaration, or one for each element.
     fn declared(&mut self, mut v: VarDecl) -> Vec<VarDecl> {
         v.init.iter_mut().chain(&mut v.safe).for_each(|e| visit_mut::expr(e, self));
+        if v.names.iter().any(|n| self.apart.contains(&(self.chart, root(&n.text)))) {
+            v.part_of = None;
+        }
         if v.array.is_none() {
             return vec![v];
         }
@@ -289,7 +319,9 @@ impl Visitor for Single<'_> {
 struct Uses<'d> {
     /// Those of which an element is chosen while the chart runs, or that are copied as a whole.
     chosen: HashSet<VarKey<'d>>,
-    /// Those of these that get a value.
+    /// Those that are copied as a whole.
+    whole: HashSet<VarKey<'d>>,
+    /// The chosen ones that get a value.
     written: HashSet<VarKey<'d>>,
     /// The elements that actions drive.
     driven: HashSet<(VarKey<'d>, Vec<i128>)>,
@@ -326,6 +358,9 @@ impl Looking<'_, '_> {
         };
         let Some(key) = self.single.array(path).filter(|_| open) else { return };
         self.found.chosen.insert(key);
+        if matches!(e.kind, ExprKind::Path(_)) {
+            self.found.whole.insert(key);
+        }
         if how == Use::Write {
             self.found.written.insert(key);
         }
@@ -350,6 +385,11 @@ impl Visitor for Looking<'_, '_> {
     fn all_bodies(&self) -> bool {
         true
     }
+}
+
+/// The variable in the name of a member: `m[]` in `m[].speed`.
+fn root(member: &str) -> &str {
+    member.split_once('.').map_or(member, |(root, _)| root)
 }
 
 /// An action on an element drives a variable now.

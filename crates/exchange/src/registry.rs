@@ -218,6 +218,9 @@ fn singled(document: &Document, keeps: Keeps) -> (Document, Vec<Problem>) {
     let mut plain = plain.into_owned();
     for item in &mut plain.items {
         let Item::Composed(block) = item else { continue };
+        if !block.block {
+            continue;
+        }
         let mut unit = as_document(block);
         unit.items.extend(document.items.iter().filter(|i| matches!(i, Item::Type(_))).cloned());
         let (unit, mut own) = singled(&unit, keeps);

@@ -232,6 +232,8 @@ pub struct VarDecl {
     pub ty: Type,
     /// The name of a type that the file declares, see [`Composed`] and [`Item::Type`].
     pub of: Option<Box<Name>>,
+    /// The structure of which this is a member: `Motor` for `m.speed`. Only [`crate::composed::with_blocks`] makes it.
+    pub part_of: Option<Box<Name>>,
     /// The values that they can have, if these are not all values of `ty`.
     pub limits: Option<Box<Limits>>,
     /// The value of elements that `init` leaves out, if a declared type gives one; otherwise it is the type's zero. The
@@ -272,6 +274,7 @@ impl VarDecl {
             array: None,
             ty,
             of: None,
+            part_of: None,
             limits: None,
             usual: None,
             init: None,

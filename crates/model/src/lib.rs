@@ -68,7 +68,7 @@ pub use g7_say::say;
 pub use language::Language;
 pub use limits::Limits;
 pub use moments::Moment;
-pub use name::{Index, Name, Param, bare, chart_in, instance_of, normal_address, slot_of};
+pub use name::{Index, Name, Param, bare, chart_in, instance_of, normal_address, slot_of, with_slot};
 pub use nanos::Nanos;
 pub use operators::{BinaryOp, Operands, Operator, UnaryOp};
 pub use plant::{Arrivals, Binding, Drive, Parts, Plant, PlantItem, Rate, StateVar, View};

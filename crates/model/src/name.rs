@@ -60,6 +60,14 @@ pub fn bare(name: &str) -> (&str, &str) {
     name.split_at(name.find('[').unwrap_or(name.len()))
 }
 
+/// A name with the place of so many indexes: `m[,]` for `m` and 2, see [`crate::ExprKind::Element`].
+pub fn with_slot(name: &str, indexes: usize) -> String {
+    match indexes {
+        0 => name.to_owned(),
+        n => format!("{name}[{}]", ",".repeat(n - 1)),
+    }
+}
+
 /// Takes the place of indexes off a name in the path of a member: `m` and 2 for `m[,]`, see
 /// [`crate::ExprKind::Element`].
 pub fn slot_of(name: &str) -> Option<(&str, usize)> {

@@ -143,7 +143,7 @@ structs! {
     TextEdit { at, text }
     Transition { label, from, to, receptivity, priority, comment, on_clearing, chained, at }
     Use { name, library, at }
-    VarDecl { kind, names, array, ty, of, limits, usual, init, address, inverted, retain, safe, comment, at }
+    VarDecl { kind, names, array, ty, of, part_of, limits, usual, init, address, inverted, retain, safe, comment, at }
     View { file, bindings, at }
 }
 

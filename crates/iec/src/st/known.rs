@@ -1,16 +1,23 @@
 //! The types of the names in a text that is printed.
 
+use std::borrow::Cow;
 use std::collections::HashMap;
 
-use g7_model::{Chart, Composed, Document, Function, Item, Name, Path, Type, VarDecl};
+use g7_model::{
+    Chart, Composed, Document, Function, Item, Name, Path, Type, VarDecl, bare, composed::DEEP, with_slot,
+};
 
 /// The types of names.
 #[derive(Debug, Default)]
 pub struct Types<'d> {
-    names: HashMap<&'d str, Named<'d>>,
+    names: HashMap<Cow<'d, str>, Named<'d>>,
     functions: HashMap<&'d str, &'d Function>,
-    /// The function blocks of the file, by their names.
-    blocks: HashMap<&'d str, &'d Composed>,
+    /// The structures and function blocks of the file, by their names.
+    composed: HashMap<&'d str, &'d Composed>,
+    /// The types of arrays.
+    arrays: HashMap<&'d str, &'d VarDecl>,
+    /// The charts, whose variables other programs name with the name of the chart before them.
+    charts: HashMap<&'d str, &'d Chart>,
 }
 
 /// The type of a name.
@@ -28,7 +35,9 @@ impl<'d> Types<'d> {
         for item in &document.items {
             match item {
                 Item::Function(f) => _ = types.functions.insert(&f.name.text, f),
-                Item::Composed(c) => _ = types.blocks.insert(&c.name.text, c),
+                Item::Composed(c) => _ = types.composed.insert(&c.name.text, c),
+                Item::Chart(c) => _ = types.charts.insert(&c.name.text, c),
+                Item::Type(t) => types.arrays.extend(t.names.iter().map(|n| (&*n.text, t))),
                 _ => {}
             }
         }
@@ -47,14 +56,53 @@ impl<'d> Types<'d> {
     }
 
     fn declare(&mut self, decl: &'d VarDecl) {
-        let block = decl.of.as_ref().and_then(|of| self.blocks.get(&*of.text));
-        let named = block.map_or(Named::Of(decl.ty), |block| Named::Instance(block));
-        self.names.extend(decl.names.iter().map(|n| (&*n.text, named)));
+        decl.names.iter().for_each(|n| self.declare_as(Cow::Borrowed(&n.text), decl, 0));
+    }
+
+    /// Adds a variable, or a member of a structure; of a structure that is one, all members: `m[].speed`.
+    fn declare_as(&mut self, name: Cow<'d, str>, decl: &'d VarDecl, depth: usize) {
+        let named = match self.type_of(decl) {
+            Some(structure) if !structure.block => {
+                let name = with_slot(&name, decl.array.as_ref().map_or(0, |a| a.dimensions.len()));
+                for member in structure.members.iter().filter(|_| depth < DEEP) {
+                    for n in &member.names {
+                        self.declare_as(format!("{name}.{}", n.text).into(), member, depth + 1);
+                    }
+                }
+                return;
+            }
+            Some(block) => Named::Instance(block),
+            None => Named::Of(decl.ty),
+        };
+        self.names.insert(name, named);
+    }
+
+    /// The structure or function block of a variable, or of the elements of an array.
+    fn type_of(&self, decl: &VarDecl) -> Option<&'d Composed> {
+        let of = decl.of.as_ref()?;
+        let of = match self.arrays.get(&*of.text) {
+            Some(array) => array.of.as_ref()?,
+            None => of,
+        };
+        self.composed.get(&*of.text).copied()
+    }
+
+    /// The type of a variable of another program, or of a member of its structure.
+    fn of_chart(&self, chart: &Name, name: &str) -> Option<Type> {
+        let chart = self.charts.get(&*chart.text)?;
+        let mut names = name.split('.').map(|n| bare(n).0);
+        let has = |decl: &&VarDecl, name: &str| decl.names.iter().any(|n| *n.text == *name);
+        let first = names.next()?;
+        let mut decl = chart.vars().find(|v| has(v, first))?;
+        for name in names {
+            decl = self.type_of(decl)?.members.iter().find(|m| has(m, name))?;
+        }
+        self.type_of(decl).is_none().then_some(decl.ty)
     }
 
     /// Adds a name of a function, which hides all others.
     pub fn own(mut self, name: &'d str, ty: Type) -> Types<'d> {
-        self.names.insert(name, Named::Of(ty));
+        self.names.insert(name.into(), Named::Of(ty));
         self
     }
 
@@ -67,7 +115,8 @@ impl<'d> Types<'d> {
             },
             [first, second] if self.names.contains_key(&*first.text) => self.of_member(first, &second.text),
             [_, second] if second.text.eq_ignore_ascii_case("X") => Some(Type::Bool),
-            [_, _] => Some(Type::Time),
+            [_, second] if second.text.eq_ignore_ascii_case("T") => Some(Type::Time),
+            [chart, variable] => self.of_chart(chart, &variable.text),
             _ => None,
         }
     }

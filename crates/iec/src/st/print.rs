@@ -6,7 +6,7 @@
 
 use g7_model::{
     Arg, BinaryOp, Expr, ExprKind, Function, Holds, Literal, Name, Operands, Path, StandardFunction, Stmt,
-    StmtKind, Type, UnaryOp,
+    StmtKind, Type, UnaryOp, filled,
 };
 
 use super::bits::{self, Bit};
@@ -220,7 +220,11 @@ impl Writer<'_> {
         }
         let index: Vec<String> = index.iter().map(|e| self.plain(e)).collect();
         let array = self.path(path);
-        Text::operand(format!("{}[{}]", array.text, index.join(", ")), array.ty)
+        let (mut text, within) = filled(&array.text, &index);
+        if let Some(behind) = index.get(within..).filter(|rest| !rest.is_empty()) {
+            text.push_str(&format!("[{}]", behind.join(", ")));
+        }
+        Text::operand(text, array.ty)
     }
 
     fn path(&self, path: &Path) -> Text {

@@ -9,7 +9,8 @@ use g7_model::{Composed, Document, Expr, ExprKind, Literal, Name, Problem, Type,
 use super::identifiers::Names;
 use crate::report::renamed;
 
-/// The function blocks of a document, with the names that they and their members have in the written file.
+/// The function blocks of a document, with the names that they and their members have in the written file, and the names of
+/// its structures.
 #[derive(Default)]
 pub(super) struct Blocks {
     types: BTreeMap<Box<str>, Renamed>,
@@ -56,7 +57,7 @@ impl Blocks {
         self.types.values().map(|t| t.name.as_str())
     }
 
-    /// The new name of a function block.
+    /// The new name of a function block or a structure.
     pub(super) fn named(&self, of: &Name) -> Name {
         Name::new(self.types.get(&of.text).map_or(&*of.text, |t| t.name.as_str()), of.at.0)
     }
@@ -100,7 +101,7 @@ impl Blocks {
 }
 
 /// Gives a literal the form that a type needs, where no type is seen from its text.
-fn typed(e: &mut Expr, ty: Type) {
+pub(super) fn typed(e: &mut Expr, ty: Type) {
     match &mut e.kind {
         ExprKind::Literal(Literal::Int(n, None)) if ty.is_real() => {
             e.kind = ExprKind::Literal(Literal::Real(format!("{n}.0").into(), None));

@@ -21,6 +21,8 @@ pub(super) struct Names {
     /// Names of each program, in upper case.
     programs: Vec<HashSet<String>>,
     vars: HashMap<(Option<usize>, Box<str>), String>,
+    /// The names of variables with a structure that stay one variable.
+    wholes: HashMap<(Option<usize>, Box<str>), String>,
     steps: HashMap<StepKey, String>,
     /// Named actions and sections.
     parts: HashMap<(Option<usize>, Box<str>), String>,
@@ -51,6 +53,7 @@ impl Names {
             global: HashSet::new(),
             programs: vec![HashSet::new(); programs],
             vars: HashMap::new(),
+            wholes: HashMap::new(),
             steps: HashMap::new(),
             parts: HashMap::new(),
             functions: HashMap::new(),
@@ -136,6 +139,28 @@ impl Names {
         let text = self.give(owner, name, prefix, "");
         self.of_vars.insert((owner, text.to_ascii_uppercase()));
         self.vars.insert((chart, name.text.clone()), text);
+    }
+
+    /// The name of a member of a structure: `behind` that of its variable, which has one name for all its members.
+    pub(super) fn give_member(
+        &mut self,
+        owner: Owner,
+        chart: Option<usize>,
+        name: &Name,
+        (variable, slot, behind): (&str, &str, &str),
+        prefix: &str,
+    ) {
+        let key = (chart, variable.into());
+        let whole = match self.wholes.get(&key) {
+            Some(whole) => whole.clone(),
+            None => {
+                let whole = self.give(owner, &Name { text: variable.into(), at: name.at }, prefix, "");
+                self.of_vars.insert((owner, whole.to_ascii_uppercase()));
+                self.wholes.insert(key, whole.clone());
+                whole
+            }
+        };
+        self.vars.insert((chart, name.text.clone()), format!("{whole}{slot}{behind}"));
     }
 
     pub(super) fn give_part(&mut self, owner: Owner, chart: Option<usize>, name: &Name, prefix: &str) {

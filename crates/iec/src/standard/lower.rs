@@ -3,12 +3,13 @@
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 use g7_model::{
-    Action, ActionKind, Chart, ChartItem, ChartKind, Document, Expr, Item, Nanos, Problem, ProfileName,
+    Action, ActionKind, Chart, ChartItem, ChartKind, Document, Expr, Item, Name, Nanos, Problem, ProfileName,
     Qualifier, Span, StepKind, Stmt, Switch, Target, VarDecl, say,
 };
 
 use super::blocks::Blocks;
-use super::identifiers::Names;
+use super::identifiers::{Names, Owner};
+use super::structures::{Structures, Whole};
 use crate::report::renamed;
 use crate::scopes::{Ref, Scopes, StepKey, VarKey};
 use crate::words;
@@ -32,10 +33,12 @@ pub(crate) enum Form {
 impl Form {
     /// The words that nothing may be called.
     pub(super) fn words(self) -> HashSet<&'static str> {
-        match self {
-            Form::Codesys { .. } => words::everywhere().collect(),
-            Form::Networks { .. } | Form::Charts => words::of_matiec().collect(),
-        }
+        if self.is_of_matiec() { words::of_matiec().collect() } else { words::everywhere().collect() }
+    }
+
+    /// True if matiec reads what is written, itself or for another tool.
+    pub(super) fn is_of_matiec(self) -> bool {
+        !matches!(self, Form::Codesys { .. })
     }
 
     /// True if expansions stand in line, in networks of one program.
@@ -49,6 +52,8 @@ pub(super) struct Lower<'d> {
     pub(super) document: &'d Document,
     pub(super) form: Form,
     pub(super) blocks: &'d Blocks,
+    /// The variables with a structure that stay one variable.
+    pub(super) whole: Whole<'d>,
     pub(super) scopes: Scopes<'d>,
     pub(super) names: Names,
     /// The program of each chart; None for a task.
@@ -150,7 +155,7 @@ impl<'d> Lower<'d> {
     pub(super) fn new(
         document: &'d Document,
         form: Form,
-        blocks: &'d Blocks,
+        (blocks, structures): (&'d Blocks, &Structures<'_>),
         shared: HashSet<VarKey<'d>>,
         read_twins: HashSet<StepKey>,
     ) -> Lower<'d> {
@@ -159,6 +164,7 @@ impl<'d> Lower<'d> {
             document,
             form,
             blocks,
+            whole: Whole::default(),
             names: Names::new(0, form.words()),
             programs: Vec::new(),
             heads: Vec::new(),
@@ -198,10 +204,12 @@ impl<'d> Lower<'d> {
         lower.divide();
         lower.names = Names::new(lower.heads.len(), form.words());
         lower.new_vars = vec![Vec::new(); lower.heads.len()];
-        lower.name();
         lower.driven_by = lower.drives();
         lower.uses = lower.used();
         lower.moved = lower.moving();
+        lower.whole = Whole::of(&lower, structures);
+        lower.whole.all_or_none(&mut lower.shared);
+        lower.name();
         lower
     }
 
@@ -279,13 +287,13 @@ impl<'d> Lower<'d> {
         }
         for item in &document.items {
             if let Item::Var(v) = item {
-                v.names.iter().for_each(|n| self.names.give_var(None, None, n, ""));
+                v.names.iter().for_each(|n| self.name_variable(None, None, n, ""));
             }
         }
         for (chart, def) in self.scopes.charts.clone().into_iter().enumerate() {
             for name in def.vars().flat_map(|v| &v.names) {
                 if self.shared.contains(&(Some(chart), &*name.text)) {
-                    self.names.give_var(None, Some(chart), name, &def.name.text);
+                    self.name_variable(None, Some(chart), name, &def.name.text);
                 }
             }
         }
@@ -304,7 +312,7 @@ impl<'d> Lower<'d> {
                     ChartItem::Var(v) => {
                         for name in &v.names {
                             if !self.shared.contains(&(Some(chart), &*name.text)) {
-                                self.names.give_var(owner, Some(chart), name, prefix);
+                                self.name_variable(owner, Some(chart), name, prefix);
                             }
                         }
                     }
@@ -325,6 +333,13 @@ impl<'d> Lower<'d> {
         if let Form::Codesys { .. } = self.form {
             let heads = self.heads.iter().filter_map(|head| self.scopes.chart(*head));
             self.units = heads.map(|head| self.names.give_unit(&head.name)).collect();
+        }
+    }
+
+    fn name_variable(&mut self, owner: Owner, chart: Option<usize>, name: &'d Name, prefix: &str) {
+        match self.whole.member((chart, &*name.text)) {
+            Some(member) => self.names.give_member(owner, chart, name, member, prefix),
+            None => self.names.give_var(owner, chart, name, prefix),
         }
     }
 

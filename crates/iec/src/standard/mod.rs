@@ -23,11 +23,13 @@ mod assemble;
 mod blocks;
 mod bodies;
 mod counts;
+mod enumerations;
 mod identifiers;
 mod idle;
 mod instances;
 mod lower;
 mod macros;
+mod structures;
 mod watch;
 
 use std::collections::HashSet;
@@ -39,10 +41,12 @@ use crate::signs;
 
 use blocks::Blocks;
 pub(crate) use counts::LONGEST;
+use enumerations::Enumerations;
 use identifiers::Names;
 pub(crate) use idle::without_idle;
 pub(crate) use lower::Form;
 use lower::Lower;
+use structures::Structures;
 
 /// The refusal of a chart without a step, for compilers that ask for a body.
 pub(crate) fn without_steps(chart: &Chart) -> Option<Problem> {
@@ -54,22 +58,33 @@ pub(crate) fn without_steps(chart: &Chart) -> Option<Problem> {
 pub(crate) fn standard(document: &Document, form: Form) -> (Document, Vec<Problem>) {
     let document = &signs::in_signs(document);
     let mut blocks = Blocks::of(document, form.words());
-    let (made, mut problems) = function_blocks(document, form, &mut blocks);
-    let (mut out, mut own, mut names) = lowered(document, form, &blocks);
+    let mut structures = Structures::of(document, &blocks, form);
+    let (made, mut problems) = function_blocks(document, form, &mut blocks, &structures);
+    let (mut out, mut own, mut names) = lowered(document, form, &blocks, &structures);
     out.items.splice(1..1, made.into_iter().map(Item::Composed));
     without_idle(&mut out);
+    let (enumerations, changed) = Enumerations::of(document, form, &mut out, &mut names);
+    problems.extend(changed);
+    structures.name_values(&enumerations);
+    structures.joined(&mut out);
     arrays::named(&mut out, &mut names);
     problems.append(&mut own);
+    problems.extend(structures.changed());
     problems.sort_by_key(|p| (p.at.start, p.at.end));
     (out, problems)
 }
 
 /// Rewrites the function blocks of a document. Each stands behind those that it has instances of, so that their names are
 /// known.
-fn function_blocks(document: &Document, form: Form, blocks: &mut Blocks) -> (Vec<Composed>, Vec<Problem>) {
+fn function_blocks(
+    document: &Document,
+    form: Form,
+    blocks: &mut Blocks,
+    structures: &Structures<'_>,
+) -> (Vec<Composed>, Vec<Problem>) {
     let (mut all, mut problems) = (Vec::new(), Vec::from_iter(blocks.take_changed()));
-    for c in document.composed() {
-        let (made, mut own, names) = lowered(&unit(document, c), form, blocks);
+    for c in document.composed().filter(|c| c.block) {
+        let (made, mut own, names) = lowered(&unit(document, c), form, blocks, structures);
         problems.append(&mut own);
         let name = blocks.named(&c.name);
         let Some(renamed) = blocks.enter(c, &names) else { continue };
@@ -87,13 +102,18 @@ fn unit(document: &Document, c: &Composed) -> Document {
 }
 
 /// Rewrites all but the function blocks of a document. The first item of the result is the profile.
-fn lowered(document: &Document, form: Form, blocks: &Blocks) -> (Document, Vec<Problem>, Names) {
+fn lowered(
+    document: &Document,
+    form: Form,
+    blocks: &Blocks,
+    structures: &Structures<'_>,
+) -> (Document, Vec<Problem>, Names) {
     // The variables that several programs use, and the steps that are read, become known on the way,
     // so this repeats until no new one is found.
     let (mut shared, mut read_twins) = (HashSet::new(), HashSet::new());
     loop {
         let known = read_twins.len();
-        let mut lower = Lower::new(document, form, blocks, shared, read_twins);
+        let mut lower = Lower::new(document, form, (blocks, structures), shared, read_twins);
         let out = lower.document();
         if lower.wanted.is_subset(&lower.shared) && lower.read_twins.len() == known {
             let (problems, names) = lower.finish();

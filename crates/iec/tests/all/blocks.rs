@@ -31,7 +31,7 @@ var sum : REAL
 var first : Count := (step_by := 3)
 ";
 
-fn document(text: &str) -> Document {
+pub(crate) fn document(text: &str) -> Document {
     let (document, problems) = g7_syntax::parse(text, FileId(0));
     assert_eq!(problems, [], "{text}");
     let (_, problems) = g7_compile::compile(&document);
@@ -52,11 +52,11 @@ const CHART: &str = "chart G {
 post { y := first.mask.0  first.up := a }
 ";
 
-fn text_of(document: &Document) -> String {
+pub(crate) fn text_of(document: &Document) -> String {
     clean(support::export("sfc", document))
 }
 
-fn project(document: &Document, dialect: Dialect) -> String {
+pub(crate) fn project(document: &Document, dialect: Dialect) -> String {
     let format = g7_exchange::named("plcopen").expect("a format of the table");
     clean(format.write_in(document, dialect).expect("it has dialects"))
 }
@@ -68,7 +68,7 @@ fn clean(written: Written) -> String {
 }
 
 /// True if a text contains these lines in this order, apart from the spaces before them.
-fn has(text: &str, lines: &str) -> bool {
+pub(crate) fn has(text: &str, lines: &str) -> bool {
     let mut all = text.lines().map(str::trim);
     lines.lines().map(str::trim).all(|line| all.any(|l| l == line))
 }

@@ -28,6 +28,8 @@ pub(super) struct Kept {
     pub(super) refused: BTreeSet<Box<str>>,
     /// True if an instance can have initial values. Otherwise its calls give its inputs the values.
     pub(super) initial: bool,
+    /// True if members of structures are marked as such, by [`VarDecl::part_of`].
+    pub(super) structures: bool,
 }
 
 impl Kept {

@@ -11,6 +11,9 @@
 //!   instances but calls, inputs and outputs. Each other one is taken apart, see [`super`].
 //! - The members and the body of a function block that stays are plain, like all else in the result.
 //! - A function block that stays stands behind those that it has instances of.
+//! - A member of a structure is a variable of its own, as in [`decomposed`], with [`VarDecl::part_of`]. The structures of which
+//!   there are such members are the first types of the result, each behind those that it has members of. An initial value in
+//!   these is a literal, or a list of such.
 
 use std::borrow::Cow;
 use std::collections::{BTreeSet, HashMap, HashSet};
@@ -18,28 +21,29 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 use super::base::{Composition, Kept};
 use super::kept::{is_parameter, is_written};
 use super::plain::{decomposed, without_locals};
+use crate::named::numbered;
 use crate::visit_mut::{self, Use, Visitor};
 use crate::{
-    Body, Composed, Document, Expr, ExprKind, Item, Path, Problem, Severity, Span, VarDecl, VarKind, bare,
-    codes,
+    Body, Composed, Document, Expr, ExprKind, Item, Limits, Literal, Path, Problem, Severity, Span, VarDecl,
+    VarKind, bare, codes,
 };
 
 /// How often a document is looked through for function blocks that cannot stay; after that, all are taken apart.
 const ROUNDS: usize = 16;
 
-/// The document without structures, and without function blocks except those that can stay. If `initial`, their instances
+/// The document with plain variables, and without function blocks except those that can stay. If `initial`, their instances
 /// keep their initial values; otherwise each call gives these.
 ///
 /// The problems tell where the result runs otherwise. Those of [`decomposed`] are left out: the caller has seen them.
 pub fn with_blocks(document: &Document, initial: bool) -> (Cow<'_, Document>, Vec<Problem>) {
-    let mut kept = candidates(document);
-    for _ in 0..ROUNDS {
-        if kept.is_empty() {
-            break;
-        }
-        match staying(document, &Kept { names: kept.clone(), initial, ..Kept::default() }) {
+    let mut names = candidates(document);
+    let rounds = if document.composed().next().is_some() { ROUNDS } else { 0 };
+    for _ in 0..rounds {
+        let kept = Kept { names: names.clone(), initial, structures: true, ..Kept::default() };
+        match staying(document, &kept) {
             Ok((made, told)) => return (Cow::Owned(made), told),
-            Err(refused) => kept.retain(|name| !refused.contains(name)),
+            Err(_) if names.is_empty() => break,
+            Err(refused) => names.retain(|name| !refused.contains(name)),
         }
     }
     (decomposed(document).0, Vec::new())
@@ -84,6 +88,8 @@ fn candidates(document: &Document) -> BTreeSet<Box<str>> {
 /// value.
 struct Known<'d> {
     values: HashSet<&'d str>,
+    /// The number of each value, by the names of its enumeration and of itself.
+    numbers: HashMap<(&'d str, &'d str), i128>,
     /// The names of variables, which hide such values.
     variables: HashSet<&'d str>,
     constants: HashMap<&'d str, &'d Expr>,
@@ -91,14 +97,22 @@ struct Known<'d> {
 
 impl<'d> Known<'d> {
     fn of(document: &'d Document) -> Known<'d> {
-        let mut known =
-            Known { values: HashSet::new(), variables: HashSet::new(), constants: HashMap::new() };
+        let mut known = Known {
+            values: HashSet::new(),
+            numbers: HashMap::new(),
+            variables: HashSet::new(),
+            constants: HashMap::new(),
+        };
         for item in &document.items {
             match item {
                 Item::Type(t) => {
                     known
                         .values
                         .extend(t.names.iter().chain(t.values().iter().map(|(n, _)| n)).map(|n| &*n.text));
+                    let numbered = numbered(t.values()).into_iter();
+                    known.numbers.extend(
+                        numbered.filter_map(|(value, n)| Some(((&*t.names.first()?.text, &*value.text), n?))),
+                    );
                 }
                 Item::Var(v) if v.kind == VarKind::Const => {
                     let value = v.init.as_ref().filter(|e| is_written(e) && v.limits.is_none());
@@ -158,6 +172,31 @@ struct Constants<'k, 'd> {
     known: &'k Known<'d>,
 }
 
+/// Puts numbers in the places of the values of an enumeration, in the declaration of a variable of that.
+struct Values<'k, 'd> {
+    known: &'k Known<'d>,
+    of: Option<&'k str>,
+}
+
+impl Visitor for Values<'_, '_> {
+    fn expr(&mut self, e: &mut Expr) {
+        let (Some(of), ExprKind::Path(path)) = (self.of, &e.kind) else { return };
+        let number = path.names.last().and_then(|value| self.known.numbers.get(&(of, &*value.text)));
+        if let Some(number) = number {
+            e.kind = ExprKind::Literal(Literal::Int(*number, None));
+        }
+    }
+}
+
+impl Constants<'_, '_> {
+    fn bounds(&mut self, v: &mut VarDecl) {
+        for (least, most) in v.array.iter_mut().flat_map(|a| &mut a.dimensions) {
+            visit_mut::expr(least, self);
+            visit_mut::expr(most, self);
+        }
+    }
+}
+
 impl Visitor for Constants<'_, '_> {
     fn expr(&mut self, e: &mut Expr) {
         let ExprKind::Path(path) = &e.kind else { return };
@@ -194,9 +233,31 @@ fn staying(document: &Document, kept: &Kept) -> Result<(Document, Vec<Problem>),
         return Err(refused);
     }
     let mut items: Vec<Item> = main.document.items;
+    let structures = structures(&units, &items);
     let first = items.iter().position(|i| matches!(i, Item::Var(_) | Item::Chart(_))).unwrap_or(items.len());
-    items.splice(first..first, units.made.into_iter().map(Item::Composed));
+    items.splice(first..first, structures.into_iter().chain(units.made).map(Item::Composed));
     Ok((Document { items, notes: main.document.notes }, units.told))
+}
+
+fn all_written(e: &Expr) -> bool {
+    match &e.kind {
+        ExprKind::List(values) => values.iter().all(|(_, e)| is_written(e)),
+        _ => is_written(e),
+    }
+}
+
+/// The structures of which there are members, and the structures in these.
+fn structures(units: &Units<'_>, items: &[Item]) -> Vec<Composed> {
+    let of_blocks = units.made.iter().flat_map(|c| &c.members);
+    let of_items = items.iter().flat_map(|item| match item {
+        Item::Var(v) => vec![v],
+        Item::Chart(c) => c.vars().collect(),
+        _ => Vec::new(),
+    });
+    let named = of_items.chain(of_blocks).filter_map(|v| v.part_of.as_ref());
+    let (mut made, mut seen) = (Vec::new(), BTreeSet::new());
+    named.for_each(|name| units.structure(&name.text, &mut seen, &mut made));
+    made
 }
 
 /// A document in plain form.
@@ -260,16 +321,32 @@ impl<'d> Units<'d> {
         self.made.push(as_block(of, unit.document, |name| name));
     }
 
+    /// A structure behind those that it has members of; the types of a file stand in each other at most [`super::DEEP`]
+    /// deep.
+    fn structure(&self, name: &str, seen: &mut BTreeSet<&'d str>, made: &mut Vec<Composed>) {
+        let Some(of) = self.types.get(name).copied().filter(|of| seen.insert(&*of.name.text)) else { return };
+        let inner = of.members.iter().filter_map(|m| m.of.as_ref());
+        inner.for_each(|inner| self.structure(&inner.text, seen, made));
+        let mut own = of.clone();
+        let mut constants = Constants { own: BTreeSet::new(), known: &self.known };
+        for v in &mut own.members {
+            let of = if let Some(Limits::Of(of)) = v.limits.as_deref() { Some(&*of.text) } else { None };
+            let mut named = Values { known: &self.known, of };
+            v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut named));
+            v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut constants));
+            v.init = v.init.take().filter(all_written);
+            constants.bounds(v);
+        }
+        made.push(own);
+    }
+
     /// The function block as a document with the types of its variables.
     fn unit(&self, of: &'d Composed) -> Document {
         let mut constants = Constants { own: own_names(of), known: &self.known };
         let mut own = of.clone();
         for v in own.members.iter_mut().chain(&mut own.inouts) {
             v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut constants));
-            for (least, most) in v.array.iter_mut().flat_map(|a| &mut a.dimensions) {
-                visit_mut::expr(least, &mut constants);
-                visit_mut::expr(most, &mut constants);
-            }
+            constants.bounds(v);
         }
         if let Some(body) = &mut own.body {
             // The constants stand in the statements, whatever language shows these.

@@ -4,7 +4,7 @@ use super::base::{Composition, Env, MOST, has_fields, is_local};
 use super::paths::filled;
 use crate::{
     Arg, Array, Composed, Expr, ExprKind, Literal, Local, Name, Path, Place, Problem, Stmt, StmtKind,
-    VarDecl, VarKind, codes, say, visit_mut,
+    VarDecl, VarKind, codes, say, visit_mut, with_slot,
 };
 
 /// A part of a variable whose members are declared.
@@ -19,6 +19,8 @@ struct Part<'v> {
     values: Vec<Option<Expr>>,
     kind: VarKind,
     retain: bool,
+    /// Its type, if that is a structure that its writer keeps.
+    structure: Option<&'v Name>,
     /// The declaration of the whole variable.
     whole: &'v VarDecl,
     at: Place,
@@ -56,6 +58,7 @@ impl<'d> Composition<'d> {
             v.address = None;
         }
         let mut all = Vec::new();
+        let stays = self.kept.structures && !self.blocks.contains(&*ty.name.text);
         for name in &v.names {
             let dimensions = v.array.as_ref().map_or(Vec::new(), |a| a.dimensions.clone());
             let values = self.values(&dimensions, vec![v.init.clone()], ty, env);
@@ -65,6 +68,7 @@ impl<'d> Composition<'d> {
                 values,
                 kind: v.kind,
                 retain: v.retain,
+                structure: stays.then_some(&*of),
                 whole: &v,
                 at: name.at,
             };
@@ -442,6 +446,7 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
         (!part.dimensions.is_empty()).then(|| Box::new(Array { dimensions: part.dimensions, at: part.at }));
     VarDecl {
         array,
+        part_of: part.structure.cloned().map(Box::new),
         limits: member.limits.clone(),
         usual: member.usual.clone(),
         init,
@@ -473,14 +478,6 @@ pub(super) fn local_values(local: &Local) -> Vec<Stmt> {
 
 fn number(n: i128, at: Place) -> Expr {
     Expr { kind: ExprKind::Literal(Literal::Int(n, None)), at }
-}
-
-/// A name with the place of so many indexes.
-pub(super) fn with_slot(text: &str, dimensions: usize) -> String {
-    match dimensions {
-        0 => text.to_owned(),
-        n => format!("{text}[{}]", ",".repeat(n - 1)),
-    }
 }
 
 /// The value of a member in the values of a structure.

@@ -4,11 +4,10 @@
 //! [`super::blocks`], which then begins again without it).
 
 use super::base::{Composition, Env, Segment, Spot};
-use super::declare::with_slot;
 use super::paths::{filled, member};
 use crate::{
     Arg, Composed, Expr, ExprKind, Name, Path, Place, Problem, Stmt, StmtKind, UnaryOp, VarDecl, VarKind,
-    codes, say,
+    codes, say, with_slot,
 };
 
 /// True for a literal, also with a sign.

@@ -51,6 +51,7 @@ impl Parser<'_> {
             ty,
             of,
             limits: limits.map(Box::new),
+            part_of: None,
             usual: None,
             init,
             address: None,

@@ -23,39 +23,69 @@ fn type_of_variable(decl: &VarDecl) -> Element {
     }
 }
 
-/// The types of arrays.
+/// The enumerations, the types of arrays, and the structures.
 pub(super) fn data_types(document: &Document) -> Element {
     let types = Known::default();
     let bound = |e: &Expr| Writer { types: &types }.plain(e);
     let dimension = |(low, high): &(Expr, Expr)| {
         Element::new("dimension").with("lower", bound(low)).with("upper", bound(high))
     };
-    let one = |item: &Item| {
-        let Item::Type(VarDecl { names, array: Some(array), ty, .. }) = item else { return None };
-        let made = Element::new("array").children(array.dimensions.iter().map(dimension));
-        let base = Element::new("baseType").child(made.child(type_of(*ty).renamed("baseType")));
-        Some(Element::new("dataType").with("name", &names.first()?.text).child(base))
+    let named = |name: &Name, base: Element| {
+        Element::new("dataType").with("name", &name.text).child(Element::new("baseType").child(base))
+    };
+    let one = |item: &Item| match item {
+        Item::Type(decl) => {
+            let base = match &decl.array {
+                Some(array) => {
+                    let made = Element::new("array").children(array.dimensions.iter().map(dimension));
+                    made.child(type_of_variable(decl).renamed("baseType"))
+                }
+                None => {
+                    let value =
+                        |(name, _): &(Name, Option<Expr>)| Element::new("value").with("name", &name.text);
+                    Element::new("enum")
+                        .child(Element::new("values").children(decl.values().iter().map(value)))
+                }
+            };
+            Some(named(decl.names.first()?, base))
+        }
+        Item::Composed(c) if !c.block => {
+            let members = c.members.iter().flat_map(|decl| decl.names.iter().map(move |n| variable(decl, n)));
+            let made = named(&c.name, Element::new("struct").children(members));
+            Some(match &c.comment {
+                Some(comment) => made.child(Element::formatted("documentation", comment)),
+                None => made,
+            })
+        }
+        _ => None,
     };
     Element::new("dataTypes").children(document.items.iter().filter_map(one))
 }
 
 /// `initialValue`.
 pub(super) fn initial(value: &Expr, ty: Type) -> Element {
-    let types = Known::default();
-    let simple = |e: &Expr| Element::new("simpleValue").with("value", Writer { types: &types }.value(e, ty));
-    let made = match &value.kind {
+    Element::new("initialValue").child(initial_value(value, Some(ty)))
+}
+
+/// An initial value; `ty` is the type of the elements of an array and unknown for the fields of a structure.
+fn initial_value(e: &Expr, ty: Option<Type>) -> Element {
+    match &e.kind {
         ExprKind::List(values) => Element::new("arrayValue").children(values.iter().map(|(times, e)| {
             let one = Element::new("value");
             let one = if *times == 1 { one } else { one.with("repetitionValue", times) };
-            one.child(simple(e))
+            one.child(initial_value(e, ty))
         })),
         ExprKind::Call(_, fields) => Element::new("structValue").children(fields.iter().map(|f| {
-            let value = Element::new("simpleValue").with("value", Writer { types: &types }.plain(&f.value));
-            Element::new("value").with("member", f.name.as_ref().map_or("", |n| &n.text)).child(value)
+            let value = Element::new("value").with("member", f.name.as_ref().map_or("", |n| &n.text));
+            value.child(initial_value(&f.value, None))
         })),
-        _ => simple(value),
-    };
-    Element::new("initialValue").child(made)
+        _ => {
+            let types = Known::default();
+            let writer = Writer { types: &types };
+            let value = ty.map_or_else(|| writer.plain(e), |ty| writer.value(e, ty));
+            Element::new("simpleValue").with("value", value)
+        }
+    }
 }
 
 /// The element of a list in a program, the name of a global list, and the test for its variables.

@@ -121,7 +121,9 @@ impl<'w> Project<'w> {
             }
         }
         for item in &document.items {
-            if let Item::Composed(block) = item {
+            if let Item::Composed(block) = item
+                && block.block
+            {
                 pous.push(self.function_block(block));
             }
         }
@@ -172,6 +174,9 @@ impl<'w> Project<'w> {
                 Item::Var(v) => v.names.iter().for_each(&mut take),
                 Item::Function(f) => take(&f.name),
                 Item::Composed(c) => take(&c.name),
+                Item::Type(t) => {
+                    t.names.iter().chain(t.values().iter().map(|(value, _)| value)).for_each(&mut take)
+                }
                 Item::Chart(c) => {
                     c.vars().flat_map(|v| &v.names).for_each(&mut take);
                     c.steps().for_each(|s| take(&s.name));
@@ -222,6 +227,7 @@ impl<'w> Project<'w> {
                 Item::Function(f) => named(&f.name),
                 Item::Composed(c) => named(&c.name),
                 Item::Chart(c) => named(&c.name),
+                Item::Type(t) => t.names.iter().chain(t.values().iter().map(|(value, _)| value)).any(named),
                 _ => false,
             })
         };

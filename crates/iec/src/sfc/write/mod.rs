@@ -55,7 +55,9 @@ impl<'d> Exporter<'d> {
             }
         }
         for item in &document.items {
-            if let Item::Composed(c) = item {
+            if let Item::Composed(c) = item
+                && c.block
+            {
                 text.push_str(&self.function_block(c));
             }
         }
@@ -258,24 +260,28 @@ fn words(text: &str) -> HashSet<&str> {
 
 /// ` := value`, ` := [1, 2, 3(0)]`, or ` := (a := 1, b := 2)`.
 fn initial(init: Option<&Expr>, ty: Type) -> String {
-    let Some(e) = init else { return String::new() };
+    init.map_or_else(String::new, |e| format!(" := {}", initial_value(e, Some(ty))))
+}
+
+/// An initial value; `ty` is the type of the elements of an array and unknown for the fields of a structure.
+fn initial_value(e: &Expr, ty: Option<Type>) -> String {
     let types = Known::default();
     let writer = Writer { types: &types };
-    let value = |e: &Expr| writer.value(e, ty);
     let one = |(times, e): &(u32, Expr)| match times {
-        1 => value(e),
-        n => format!("{n}({})", value(e)),
+        1 => initial_value(e, ty),
+        n => format!("{n}({})", initial_value(e, ty)),
     };
     let field = |f: &Arg| {
         let name = f.name.as_ref().map_or("", |n| &n.text);
-        format!("{name} := {}", writer.plain(&f.value))
+        format!("{name} := {}", initial_value(&f.value, None))
     };
-    match &e.kind {
-        ExprKind::List(values) => format!(" := [{}]", values.iter().map(one).collect::<Vec<_>>().join(", ")),
-        ExprKind::Call(_, fields) => {
-            format!(" := ({})", fields.iter().map(field).collect::<Vec<_>>().join(", "))
+    match (&e.kind, ty) {
+        (ExprKind::List(values), _) => format!("[{}]", values.iter().map(one).collect::<Vec<_>>().join(", ")),
+        (ExprKind::Call(_, fields), _) => {
+            format!("({})", fields.iter().map(field).collect::<Vec<_>>().join(", "))
         }
-        _ => format!(" := {}", value(e)),
+        (_, Some(ty)) => writer.value(e, ty),
+        (_, None) => writer.plain(e),
     }
 }
 
@@ -365,29 +371,39 @@ fn type_of(decl: &VarDecl) -> String {
     decl.of.as_ref().map_or_else(|| type_name(decl.ty), |of| of.text.to_string())
 }
 
-/// The types of arrays.
+/// The enumerations, the types of arrays, and the structures.
 fn types(document: &Document) -> String {
     let types = Known::default();
     let bound = |e: &Expr| Writer { types: &types }.plain(e);
     let mut lines = String::new();
     for item in &document.items {
-        if let Item::Type(VarDecl { names, array: Some(array), ty, .. }) = item
-            && let Some(name) = names.first()
-        {
-            let bounds: Vec<String> = array
-                .dimensions
-                .iter()
-                .map(|(low, high)| format!("{}..{}", bound(low), bound(high)))
-                .collect();
-            lines.push_str(&format!(
-                "  {} : ARRAY[{}] OF {};\n",
-                name.text,
-                bounds.join(", "),
-                type_name(*ty)
-            ));
+        match item {
+            Item::Type(decl) => {
+                let Some(name) = decl.names.first() else { continue };
+                let Some(array) = &decl.array else {
+                    let values: Vec<&str> = decl.values().iter().map(|(value, _)| &*value.text).collect();
+                    lines.push_str(&format!("  {} : ({});\n", name.text, values.join(", ")));
+                    continue;
+                };
+                let range = |(low, high): &(Expr, Expr)| format!("{}..{}", bound(low), bound(high));
+                let bounds: Vec<String> = array.dimensions.iter().map(range).collect();
+                let bounds = bounds.join(", ");
+                lines.push_str(&format!("  {} : ARRAY[{bounds}] OF {};\n", name.text, type_of(decl)));
+            }
+            Item::Composed(c) if !c.block => lines.push_str(&structure(c)),
+            _ => {}
         }
     }
     if lines.is_empty() { lines } else { format!("TYPE\n{lines}END_TYPE\n\n") }
+}
+
+fn structure(c: &Composed) -> String {
+    let comment = c.comment.as_ref().map_or_else(String::new, |c| format!(" (* {} *)", clean(c)));
+    let mut text = format!("  {} : STRUCT{comment}\n", c.name.text);
+    for decl in &c.members {
+        decl.names.iter().for_each(|name| text.push_str(&format!("    {}\n", line(decl, &name.text))));
+    }
+    text + "  END_STRUCT;\n"
 }
 
 fn line(decl: &VarDecl, name: &str) -> String {

@@ -15,7 +15,7 @@ mod instances;
 mod problems;
 mod programs;
 mod types;
-mod written;
+pub(crate) mod written;
 
 use crate::support;
 

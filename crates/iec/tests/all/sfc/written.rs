@@ -335,7 +335,7 @@ fn programs_have_a_variable_and_texts_stand_where_they_are_used() {
 }
 
 /// The judgement of matiec on a text.
-fn compile(matiec: &g7_peers::Matiec, text: &str) -> Result<(), String> {
+pub(crate) fn compile(matiec: &g7_peers::Matiec, text: &str) -> Result<(), String> {
     static CALLS: AtomicUsize = AtomicUsize::new(0);
     let call = CALLS.fetch_add(1, Ordering::Relaxed);
     let folder = std::env::temp_dir().join(format!("g7-iectext-{}-{call}", std::process::id()));

@@ -60,6 +60,7 @@ fn variable() -> impl Strategy<Value = VarDecl> {
             array,
             of,
             limits: limits.map(Box::new),
+            part_of: None,
             usual: None,
             ty,
             init: if kind == VarKind::Const { Some(value) } else { init },

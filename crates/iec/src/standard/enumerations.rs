@@ -1,0 +1,479 @@
+//! Enumerations of the file, which stay types of `TYPE … END_TYPE` with names for their values.
+//!
+//! Up to here a variable of an enumeration is an INT with [`Limits::Of`], and numbers stand in the places of values. An
+//! enumeration stays if its numbers are 0, 1, 2 …, which compilers give the values as well, and if all its variables are only compared for equality, assigned, given to parameters of the same type
+//! and chosen from by CASE, each time beside a value or a variable of the same type (IEC 61131-3:2003, 2.3.3.1). Otherwise
+//! its variables stay INT, and its values numbers.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+
+use g7_model::visit::Visitor as Reader;
+use g7_model::visit_mut::{self, Use, Visitor};
+use g7_model::{
+    BinaryOp, Block, Body, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Limits, Name, Order, Path,
+    Problem, Span, Stmt, StmtKind, Type, VarDecl, VarKind, named::numbered,
+};
+
+use super::identifiers::Names;
+use super::lower::Form;
+use crate::nodes;
+use crate::report::renamed;
+
+/// The enumerations that stay, by their names in the document.
+#[derive(Default)]
+pub(super) struct Enumerations {
+    types: BTreeMap<Box<str>, Enumeration>,
+}
+
+/// An enumeration with its new names.
+struct Enumeration {
+    name: Name,
+    /// In the order of their numbers 0, 1, 2 …
+    values: Vec<Name>,
+}
+
+impl Enumerations {
+    /// Finds the enumerations of a document that stay in what was made of it, and puts their types and values into that.
+    pub(super) fn of(
+        document: &Document,
+        form: Form,
+        out: &mut Document,
+        names: &mut Names,
+    ) -> (Enumerations, Option<Problem>) {
+        let counts = counts(document);
+        let mut made = Enumerations::default();
+        if counts.is_empty() {
+            return (made, None);
+        }
+        let variables = Variables::of(out);
+        let mut looking = Looking::new(&variables, form, counts, None);
+        looking.document(out);
+        document.composed().filter(|c| !c.block).flat_map(|c| &c.members).for_each(|m| looking.initial(m));
+        let staying = looking.staying();
+        if staying.is_empty() {
+            return (made, None);
+        }
+        let changed = made.name(document, out, &staying, names);
+        let mut naming = Looking::new(&variables, form, looking.counts, Some(&made));
+        naming.document(out);
+        let mut types: Vec<&Enumeration> = made.types.values().collect();
+        types.sort_by_key(|t| t.name.at.0.start);
+        let types: Vec<Item> = types.into_iter().map(Enumeration::declared).collect();
+        out.items.splice(1..1, types);
+        (made, changed)
+    }
+
+    /// Gives the enumerations and their values names that nothing else has.
+    fn name(
+        &mut self,
+        document: &Document,
+        out: &Document,
+        staying: &BTreeSet<Box<str>>,
+        names: &mut Names,
+    ) -> Option<Problem> {
+        // Compilers know the names of values everywhere.
+        for c in out.composed().chain(document.composed().filter(|c| !c.block)) {
+            let own = c.members.iter().chain(&c.inouts).flat_map(|m| &m.names);
+            own.for_each(|n| names.reserve(&n.text));
+        }
+        let mut changed = Vec::new();
+        let mut give = |name: &Name, wish: &str| {
+            let new = names.free(None, wish);
+            if *new != *name.text {
+                changed.push((name.at.0, name.text.clone(), new.clone()));
+            }
+            Name::new(new, name.at.0)
+        };
+        for (name, values) in enumerations(document).filter(|(name, _)| staying.contains(&name.text)) {
+            let new = give(name, &name.text);
+            let values = values.iter().map(|(value, _)| give(value, &value.text)).collect();
+            self.types.insert(name.text.clone(), Enumeration { name: new, values });
+        }
+        renamed(&changed)
+    }
+
+    fn get(&self, limits: Option<&Limits>) -> Option<&Enumeration> {
+        match limits {
+            Some(Limits::Of(name)) => self.types.get(&name.text),
+            _ => None,
+        }
+    }
+
+    /// The new name of the enumeration of a declaration, which gives these values their names.
+    pub(super) fn of_member(&self, decl: &VarDecl, values: &mut [Expr]) -> Option<Name> {
+        let of = self.get(decl.limits.as_deref())?;
+        if !firsts(decl) {
+            values.iter_mut().for_each(|e| of.value(e));
+        }
+        Some(of.name.clone())
+    }
+
+    /// Gives a declaration the type and the names of values.
+    fn declare(&self, decl: &mut VarDecl) {
+        let Some(of) = self.get(decl.limits.as_deref()) else { return };
+        decl.of = Some(Box::new(of.name.clone()));
+        if firsts(decl) {
+            decl.init = None;
+        }
+        match decl.init.as_mut().map(|e| &mut e.kind) {
+            Some(ExprKind::List(values)) => values.iter_mut().for_each(|(_, e)| of.value(e)),
+            Some(_) => decl.init.iter_mut().for_each(|e| of.value(e)),
+            None => {}
+        }
+    }
+}
+
+/// True for an array whose initial values are all the first one, as they are without being written.
+fn firsts(decl: &VarDecl) -> bool {
+    matches!(decl.init.as_ref().map(|e| &e.kind), Some(ExprKind::List(all)) if all.iter().all(|(_, e)| e.kind.whole() == Some(0)))
+}
+
+impl Enumeration {
+    /// Puts the name of a value in the place of its number.
+    fn value(&self, e: &mut Expr) {
+        let place = e.kind.whole().and_then(|n| usize::try_from(n).ok());
+        if let Some(name) = place.and_then(|n| self.values.get(n)) {
+            *e = nodes::name(&[&name.text], e.at.0);
+        }
+    }
+
+    fn declared(&self) -> Item {
+        let values = self.values.iter().map(|name| (name.clone(), None)).collect();
+        let limits = Some(Box::new(Limits::Values(values)));
+        let at = self.name.at;
+        Item::Type(VarDecl { limits, ..VarDecl::new(VarKind::Var, vec![self.name.clone()], Type::Int, at) })
+    }
+}
+
+/// The names and values of the enumerations of a document.
+type Values = [(Name, Option<Expr>)];
+
+fn enumerations(document: &Document) -> impl Iterator<Item = (&Name, &Values)> {
+    document.items.iter().filter_map(|item| match item {
+        Item::Type(t) if !t.values().is_empty() => Some((t.names.first()?, t.values())),
+        _ => None,
+    })
+}
+
+/// The number of values of each enumeration whose numbers are 0, 1, 2 …
+fn counts(document: &Document) -> BTreeMap<Box<str>, i128> {
+    let one = |(name, values): (&Name, &Values)| {
+        let numbers = numbered(values).into_iter().map(|(_, n)| n);
+        numbers.eq((0..).map(Some).take(values.len())).then(|| (name.text.clone(), values.len() as i128))
+    };
+    enumerations(document).filter_map(one).collect()
+}
+
+/// Where a name is declared: in the file, in a chart, or in a function block.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+enum Home {
+    #[default]
+    File,
+    Chart(Box<str>),
+    Block(Box<str>),
+}
+
+/// What a declaration tells here.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+struct Declared {
+    /// The enumeration of a variable.
+    of: Option<Box<str>>,
+    /// The function block of an instance.
+    block: Option<Box<str>>,
+}
+
+/// All variables of a document.
+#[derive(Default)]
+struct Variables {
+    all: HashMap<(Home, Box<str>), Declared>,
+    /// Those of charts, by their names alone: an expansion names variables of its program. Those that several charts
+    /// declare otherwise are left out.
+    of_charts: HashMap<Box<str>, Declared>,
+    /// The enumerations of variables that are left out there.
+    unclear: BTreeSet<Box<str>>,
+}
+
+impl Variables {
+    fn of(document: &Document) -> Variables {
+        let mut made = Variables::default();
+        let parts = document.charts().any(|c| c.kind != ChartKind::Chart);
+        for item in &document.items {
+            match item {
+                Item::Var(v) => made.add(&Home::File, v),
+                Item::Chart(c) => {
+                    for v in c.vars() {
+                        made.add(&Home::Chart(c.name.text.clone()), v);
+                        if parts {
+                            made.add_of_chart(v);
+                        }
+                    }
+                }
+                Item::Composed(c) => {
+                    let home = Home::Block(c.name.text.clone());
+                    c.members.iter().chain(&c.inouts).for_each(|v| made.add(&home, v));
+                }
+                _ => {}
+            }
+        }
+        made
+    }
+
+    fn add(&mut self, home: &Home, decl: &VarDecl) {
+        let declared = declared(decl);
+        self.all.extend(decl.names.iter().map(|n| ((home.clone(), n.text.clone()), declared.clone())));
+    }
+
+    fn add_of_chart(&mut self, decl: &VarDecl) {
+        let declared = declared(decl);
+        for name in &decl.names {
+            let known = self.of_charts.entry(name.text.clone()).or_insert_with(|| declared.clone());
+            if *known != declared {
+                self.unclear.extend([known.of.take(), declared.of.clone()].into_iter().flatten());
+                known.block = None;
+            }
+        }
+    }
+
+    fn find(&self, home: &Home, name: &str) -> Option<&Declared> {
+        let within = |home: &Home| self.all.get(&(home.clone(), name.into()));
+        match home {
+            Home::Block(_) | Home::File => within(home),
+            Home::Chart(_) => {
+                within(home).or_else(|| within(&Home::File)).or_else(|| self.of_charts.get(name))
+            }
+        }
+    }
+
+    /// The enumeration of a variable that a path names in a chart, a function block or the file.
+    fn of_path(&self, home: &Home, path: &Path) -> Option<&str> {
+        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
+        let found = match names.as_slice() {
+            [name] => self.find(home, name),
+            [first, second] => match self.find(home, first) {
+                Some(instance) => self.find(&Home::Block(instance.block.clone()?), second),
+                None => self.find(&Home::Chart((*first).into()), second),
+            },
+            [unit, instance, member] => {
+                let block = self.find(&Home::Chart((*unit).into()), instance)?.block.clone()?;
+                self.find(&Home::Block(block), member)
+            }
+            _ => None,
+        };
+        found?.of.as_deref()
+    }
+
+    /// The enumeration of a parameter of the function block that a path calls.
+    fn of_parameter(&self, home: &Home, called: &Path, name: &str) -> Option<&str> {
+        let instance = match called.names.as_slice() {
+            [instance] => self.find(home, &instance.text),
+            [unit, instance] => self.find(&Home::Chart(unit.text.clone()), &instance.text),
+            _ => None,
+        };
+        self.find(&Home::Block(instance?.block.clone()?), name)?.of.as_deref()
+    }
+}
+
+fn declared(decl: &VarDecl) -> Declared {
+    let of = if let Some(Limits::Of(of)) = decl.limits.as_deref() { Some(of.text.clone()) } else { None };
+    Declared { of, block: decl.of.as_ref().map(|of| of.text.clone()) }
+}
+
+/// Looks at all uses of variables of enumerations; with `made`, puts names in the places of numbers.
+struct Looking<'a> {
+    variables: &'a Variables,
+    form: Form,
+    /// The number of values of each enumeration.
+    counts: BTreeMap<Box<str>, i128>,
+    made: Option<&'a Enumerations>,
+    home: Home,
+    /// How often variables of each enumeration are named, and how often where names of values can stand.
+    named: BTreeMap<Box<str>, usize>,
+    right: BTreeMap<Box<str>, usize>,
+    /// The enumerations with a value that has no name.
+    nameless: BTreeSet<Box<str>>,
+    /// The names of local variables of bodies.
+    locals: HashSet<Box<str>>,
+}
+
+impl<'a> Looking<'a> {
+    fn new(
+        variables: &'a Variables,
+        form: Form,
+        counts: BTreeMap<Box<str>, i128>,
+        made: Option<&'a Enumerations>,
+    ) -> Looking<'a> {
+        Looking {
+            variables,
+            form,
+            counts,
+            made,
+            home: Home::File,
+            named: BTreeMap::new(),
+            right: BTreeMap::new(),
+            nameless: BTreeSet::new(),
+            locals: HashSet::new(),
+        }
+    }
+
+    fn document(&mut self, document: &mut Document) {
+        for item in &mut document.items {
+            self.home = match item {
+                Item::Chart(c) => Home::Chart(c.name.text.clone()),
+                Item::Composed(c) => Home::Block(c.name.text.clone()),
+                _ => Home::File,
+            };
+            match item {
+                Item::Var(v) => self.declared(v),
+                Item::Chart(c) => {
+                    let own = c.items.iter_mut();
+                    own.filter_map(|i| if let ChartItem::Var(v) = i { Some(v) } else { None })
+                        .for_each(|v| self.declared(v));
+                }
+                Item::Composed(c) => {
+                    c.members.iter_mut().for_each(|v| self.declared(v));
+                    c.inouts.iter_mut().for_each(|v| self.declared(v));
+                    if let Some(Body::St(block)) = &mut c.body {
+                        visit_mut::block(block, self);
+                    }
+                }
+                _ => {}
+            }
+            if !matches!(item, Item::Function(_)) {
+                self.locals_of(item);
+            }
+            visit_mut::item(item, self);
+        }
+    }
+
+    /// Notes the names of local variables, which hide others.
+    fn locals_of(&mut self, item: &Item) {
+        struct Locals<'l>(&'l mut HashSet<Box<str>>);
+        impl<'d> Reader<'d> for Locals<'_> {
+            fn path(&mut self, _: &'d [Name]) {}
+            fn direct(&mut self, _: &'d str, _: Span) {}
+            fn order(&mut self, _: &'d Order) {}
+            fn enter(&mut self, block: &'d Block) {
+                self.0.extend(block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone()));
+            }
+        }
+        Locals(&mut self.locals).item(item);
+    }
+
+    fn declared(&mut self, decl: &mut VarDecl) {
+        match self.made {
+            Some(made) => made.declare(decl),
+            None => self.initial(decl),
+        }
+    }
+
+    /// Notes a declaration whose initial value has no name. Without a value it is the number 0.
+    fn initial(&mut self, decl: &VarDecl) {
+        let Some(Limits::Of(of)) = decl.limits.as_deref() else { return };
+        let named = |e: &Expr| self.has(&of.text, e);
+        let fits = match decl.init.as_ref().map(|e| (e, &e.kind)) {
+            // matiec ends at the name of a value in such a list.
+            Some((_, ExprKind::List(_))) if self.form.is_of_matiec() => firsts(decl),
+            Some((_, ExprKind::List(values))) => values.iter().all(|(_, e)| named(e)),
+            Some((e, _)) => named(e),
+            // The standard takes the first value where none is written (2.4.3.1).
+            None => true,
+        };
+        if !fits {
+            self.nameless.insert(of.text.clone());
+        }
+    }
+
+    /// The enumerations that can stay.
+    fn staying(&self) -> BTreeSet<Box<str>> {
+        let all = || self.variables.all.iter().filter_map(|((_, name), d)| Some((name, d.of.as_deref()?)));
+        let used: BTreeSet<&str> = all().map(|(_, of)| of).collect();
+        let hidden: BTreeSet<&str> =
+            all().filter(|(n, _)| self.locals.contains(*n)).map(|(_, of)| of).collect();
+        let stays = |name: &&Box<str>| {
+            used.contains(&***name)
+                && !hidden.contains(&***name)
+                && !self.nameless.contains(*name)
+                && !self.variables.unclear.contains(*name)
+                && self.named.get(*name) == self.right.get(*name)
+        };
+        self.counts.keys().filter(stays).cloned().collect()
+    }
+
+    fn of(&self, e: &Expr) -> Option<Box<str>> {
+        let path = match &e.kind {
+            ExprKind::Path(path) => path,
+            ExprKind::Element(path, _, None) => path,
+            _ => return None,
+        };
+        self.variables.of_path(&self.home, path).map(Box::from)
+    }
+
+    /// A place where a value or a variable of an enumeration can stand.
+    fn place(&mut self, of: &str, e: &mut Expr) {
+        if self.of(e).is_some_and(|own| *own == *of) {
+            *self.right.entry(of.into()).or_default() += 1;
+        } else if let Some(made) = self.made {
+            made.types.get(of).iter().for_each(|t| t.value(e));
+        } else if !self.has(of, e) {
+            self.nameless.insert(of.into());
+        }
+    }
+
+    /// True for the number of a value.
+    fn has(&self, of: &str, e: &Expr) -> bool {
+        e.kind.whole().zip(self.counts.get(of)).is_some_and(|(n, count)| (0..*count).contains(&n))
+    }
+}
+
+impl Visitor for Looking<'_> {
+    fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+        if let Some(of) = self.variables.of_path(&self.home, path) {
+            *self.named.entry(of.into()).or_default() += 1;
+        }
+    }
+
+    fn expr(&mut self, e: &mut Expr) {
+        let ExprKind::Binary(BinaryOp::Eq | BinaryOp::Ne, a, b) = &mut e.kind else { return };
+        if let Some(of) = self.of(a).or_else(|| self.of(b)) {
+            self.place(&of, a);
+            self.place(&of, b);
+        }
+    }
+
+    fn stmt(&mut self, stmt: &mut Stmt) {
+        match &mut stmt.kind {
+            StmtKind::Assign { target, value } => {
+                if let Some(of) = self.of(target) {
+                    self.place(&of, target);
+                    self.place(&of, value);
+                }
+            }
+            StmtKind::Case(selector, arms, _) => {
+                let Some(of) = self.of(selector) else { return };
+                self.place(&of, selector);
+                for (value, end) in arms.iter_mut().flat_map(|a| &mut a.labels) {
+                    match end {
+                        None => self.place(&of, value),
+                        Some(_) => _ = self.nameless.insert(of.clone()),
+                    }
+                }
+            }
+            StmtKind::Call(called, args) => {
+                for arg in args {
+                    let of = arg
+                        .name
+                        .as_ref()
+                        .and_then(|n| self.variables.of_parameter(&self.home, called, &n.text));
+                    if let Some(of) = of.map(Box::<str>::from) {
+                        self.place(&of, &mut arg.value);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn all_bodies(&self) -> bool {
+        true
+    }
+}
