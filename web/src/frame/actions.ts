@@ -1,8 +1,9 @@
 // The operations of the frame on files.
+import { drafts } from '../lib/drafts.svelte';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page } from '../lib/page';
-import { Conflict, server } from '../lib/server';
+import { Conflict, Gone, server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
 /** A first file: one chart with one step, on which the user can build. */
@@ -15,12 +16,27 @@ export async function save(file: OpenFile): Promise<void> {
     download(file);
     return;
   }
+  await put(file, file.text);
+}
+
+/** Saves a text of a file, and says what became of it. Without a connection it waits until the server is back. */
+export async function put(file: OpenFile, text: string): Promise<void> {
   try {
-    await files.save(file);
+    await files.save(file, text);
     shell.say(t('app.saved', { name: file.name }));
   } catch (error) {
-    if (error instanceof Conflict) file.outside = { text: error.text, hash: error.hash };
-    else shell.say((error as Error).message, 'error');
+    if (error instanceof Gone && text !== file.saved) {
+      file.waits = text;
+      // Kept at once, so that loading the page again loses neither the text nor the wish.
+      await drafts.keep(file.name, { text: file.text, base: file.tag ?? '', waits: text });
+      shell.say(t('gone.waits', { name: file.name }));
+      return;
+    }
+    file.waits = null;
+    if (error instanceof Conflict) {
+      file.outside = { text: error.text, hash: error.hash };
+      if (file !== files.current) shell.say(t('app.outside', { name: file.name }), 'error');
+    } else shell.say((error as Error).message, 'error');
   }
 }
 

@@ -6,6 +6,8 @@ import { local } from '../lib/local';
 import { prefs } from '../lib/prefs.svelte';
 import { server, type Changed } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
+import { runs } from '../lib/runs.svelte';
+import { back, lookAt, saveWaiting } from './back';
 import { recover } from './recover';
 
 export async function begin(): Promise<void> {
@@ -21,11 +23,18 @@ export async function begin(): Promise<void> {
     if (changed) void changedOutside(changed);
     if (message.drafts) drafts.soon();
   });
+  let lost = false;
+  server.link((up) => {
+    if (up && lost) void shell.try(back);
+    if (!up) runs.lost();
+    lost = !up;
+  });
   local.hear(() => drafts.soon());
   const wished = new URL(location.href).searchParams.get('file') ?? server.info?.start;
   if (wished) await shell.try(() => files.read(wished));
   await recover();
   shell.ready = true;
+  await saveWaiting();
 }
 
 /** A file of the folder has changed: takes the new text if nothing was changed here, otherwise
@@ -34,14 +43,7 @@ async function changedOutside({ path, hash }: Changed): Promise<void> {
   shell.folder = (await shell.try(() => server.files())) ?? shell.folder;
   const file = files.find(path);
   if (!file) return files.outside(path);
-  if (file.tag === hash) return;
-  const now = await server.read(path).catch(() => null);
-  if (!now || now.text === file.saved) return;
-  if (file.text === now.text || !file.changed) {
-    if (file.text !== now.text) await shell.try(() => file.replace(now.text));
-    file.saved = now.text;
-    file.tag = now.hash;
-  } else file.outside = now;
+  if (file.tag !== hash) await lookAt(file);
 }
 
 /** Keeps copies of unsaved work, one second after a change; call once, inside a component. */
@@ -63,6 +65,6 @@ export function keepDrafts(): void {
 
 async function keep(file: OpenFile): Promise<void> {
   if (!files.list.includes(file)) return;
-  if (file.changed) await drafts.keep(file.name, { text: file.text, base: file.tag ?? '' });
+  if (file.changed) await drafts.keep(file.name, { text: file.text, base: file.tag ?? '', waits: file.waits });
   else await drafts.undone(file.name, file.saved);
 }

@@ -33,7 +33,7 @@ export async function restore(row: DraftRow): Promise<void> {
 
 /** Opens a copy as the unsaved text of its file, and shows that or another file; false if it is no other text than that
  * of the file. */
-async function shown({ path, text, base }: Draft, seen: OpenFile | null = null): Promise<boolean> {
+async function shown({ path, text, base, waits }: Draft, seen: OpenFile | null = null): Promise<boolean> {
   const open = files.find(path);
   const known = open ? open.saved !== null : shell.folder.some((f) => f.path === path);
   const file = await shell.try(() => (known ? files.read(path) : files.open(path, text)));
@@ -46,6 +46,7 @@ async function shown({ path, text, base }: Draft, seen: OpenFile | null = null):
   }
   if (file.text !== text) await shell.try(() => file.replace(text));
   file.recovered = true;
+  file.waits = waits ?? null;
   if (known && base !== null && base !== file.tag) {
     // The file was changed since: saving asks what is to be done.
     file.outside = { text: file.saved ?? '', hash: file.tag ?? '' };

@@ -13,6 +13,8 @@ export interface Draft {
   text: string;
   /** The hash of the file that was changed; empty for a new file, null if it is not known. */
   base: string | null;
+  /** The text whose saving waits for the server. */
+  waits?: string | null;
 }
 
 /** A copy, as the list tells of it. */

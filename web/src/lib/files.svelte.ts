@@ -6,7 +6,7 @@ import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
 import type { Edited, Gesture, Look, Shelved, Splice } from './protocol';
 import { Redraws, type Drawing } from './redrawn';
-import { server } from './server';
+import { Conflict, server } from './server';
 
 /** The origin of a change; a listener that made the change itself can ignore it. */
 export type Origin = 'text' | 'structure' | 'history' | 'disk';
@@ -55,6 +55,8 @@ export class OpenFile {
   /** The present text on the disk, if it is neither ours nor the one that was read. */
   outside: { text: string; hash: string } | null = $state.raw(null);
   readonly changed: boolean = $derived(this.text !== this.saved);
+  /** The text whose saving waits until the server is back. */
+  waits: string | null = $state.raw(null);
   /** Its text is unsaved work of an earlier time. */
   recovered = $state(false);
 
@@ -274,11 +276,24 @@ class Files {
     return this.open(path, text, text, hash);
   }
 
-  async save(file: OpenFile): Promise<void> {
-    const text = file.text;
-    file.tag = await server.write(file.name, text, file.tag);
+  #saves = new WeakMap<OpenFile, Promise<unknown>>();
+
+  /** Saves a text of a file, when those before it are saved. */
+  save(file: OpenFile, text = file.text): Promise<void> {
+    const done = (this.#saves.get(file) ?? Promise.resolve()).then(() => this.#save(file, text));
+    this.#saves.set(file, done.catch(() => undefined));
+    return done;
+  }
+
+  async #save(file: OpenFile, text: string): Promise<void> {
+    file.tag = await server.write(file.name, text, file.tag).catch((error: unknown) => {
+      // The server has written it, and its answer was lost.
+      if (error instanceof Conflict && error.text === text) return error.hash;
+      throw error;
+    });
     file.saved = text;
     file.outside = null;
+    file.waits = null;
     // The user may have typed while the file was saved: that text still needs its copy.
     if (!file.changed) void drafts.saved(file.name);
   }

@@ -2,6 +2,7 @@
 // does not answer.
 import type { Draft, DraftRow, End } from './drafts.svelte';
 import { here, others } from './here';
+import { link } from './link.svelte';
 import { server } from './server';
 
 /** How long a copy is kept that was closed, in ms. */
@@ -12,13 +13,15 @@ interface Stored {
   window: string;
   text: string;
   base: string | null;
+  waits?: string | null;
   at: number;
   closed: boolean;
 }
 
 /** Several servers with different folders may use the same address. */
-const place = () => `g7-work:${server.info?.folder ?? ''}|`;
-/** The places of earlier versions, which held the text alone. */
+const place = () => `g7-work:${server.info?.place ?? ''}|`;
+/** The places of earlier versions: they had the folder as the user had named it, and the first ones held the text alone. */
+const named = () => `g7-work:${server.info?.folder ?? ''}|`;
 const before = () => `g7-draft:${server.info?.folder ?? ''}|`;
 
 const keyOf = (path: string) => `${place()}${here}|${path}`;
@@ -31,11 +34,13 @@ function stored(key: string): Stored | null {
   }
 }
 
+/** Writes a copy; if the storage is full, it keeps its contents. */
 function write(key: string, copy: Stored): void {
   try {
     localStorage.setItem(key, JSON.stringify(copy));
+    link.full = false;
   } catch {
-    // If the storage is full, it keeps its contents.
+    link.full = true;
   }
 }
 
@@ -63,6 +68,12 @@ function renew(): void {
     write(`${place()}|${path}`, { path, window: '', text, base: null, at: Date.now(), closed: false });
     drop(key);
   }
+  if (named() === place()) return;
+  for (const key of keys(named())) {
+    const copy = stored(key);
+    if (copy) write(place() + key.slice(named().length), copy);
+    drop(key);
+  }
 }
 
 export const local = {
@@ -84,10 +95,10 @@ export const local = {
     return rows;
   },
 
-  keep(path: string, { text, base }: Omit<Draft, 'path'>, end: End): void {
+  keep(path: string, { text, base, waits }: Omit<Draft, 'path'>, end: End): void {
     const at = Date.now();
     const key = end === 'closed' ? `${keyOf(path)}|${at}` : keyOf(path);
-    write(key, { path, window: here, text, base, at, closed: end !== 'open' });
+    write(key, { path, window: here, text, base, waits: end === 'open' ? waits : null, at, closed: end !== 'open' });
     if (end === 'closed') drop(keyOf(path));
   },
 
@@ -109,8 +120,10 @@ export const local = {
       if (other && row.path === copy.path && row.id !== id && row.holder === 'gone') write(row.id, { ...other, closed: true });
     }
     drop(id);
-    local.keep(copy.path, copy, 'open');
-    return copy;
+    // The wish of another window to save is not done unasked.
+    const taken = copy.window === here ? copy : { ...copy, waits: null };
+    local.keep(copy.path, taken, 'open');
+    return taken;
   },
 
   drop,

@@ -6,6 +6,8 @@
 // the whole program, is asked.
 import { untrack } from 'svelte';
 
+import { t } from './i18n';
+import { link } from './link.svelte';
 import { prefs } from './prefs.svelte';
 import type { Answers, Frame, Requests } from './protocol';
 
@@ -55,6 +57,8 @@ export function opened<T>(answer: string): T {
 
 /** The begin of an answer that sends to the second module. */
 const ELSEWHERE = '{"elsewhere":';
+/** The answer of a worker that could not get its module. */
+const ABSENT = '{"absent":true}';
 
 /** A worker with the wasm; it starts with the first message. */
 export class Local implements Door {
@@ -72,6 +76,8 @@ export class Local implements Door {
   }
 
   #ask(message: object): Promise<unknown> {
+    // Whoever answers now may be a stranger, so nothing is loaded from there (decision 71).
+    if (!this.#worker && untrack(() => link.state) !== 'up') return Promise.reject(new Refused(t('gone.part')));
     const worker = (this.#worker ??= this.#start());
     const language = untrack(() => prefs.language);
     if (this.#language !== language) {
@@ -89,6 +95,10 @@ export class Local implements Door {
     worker.postMessage({ wasm: new URL(this.module, document.baseURI).href });
     worker.onmessage = (event: MessageEvent<string>) => {
       const waiting = this.#waiting.shift();
+      if (event.data === ABSENT) {
+        waiting?.reject(new Refused(t('gone.part')));
+        return;
+      }
       try {
         // The text is looked at first: a drawing is long, and is not to be parsed twice.
         const there = event.data.startsWith(ELSEWHERE) ? (JSON.parse(event.data) as { elsewhere: Elsewhere }).elsewhere : null;

@@ -7,12 +7,31 @@ interface Door {
   g7_answer(): number;
 }
 
+/** The answer where the module could not be fetched; `page.ts` knows it. */
+const ABSENT = '{"absent":true}';
+
+let address = '';
 let door: Promise<Door> | undefined;
 const encoder = new TextEncoder();
 const decoder = new TextDecoder();
 
-async function load(address: string): Promise<Door> {
-  const answer = await fetch(address);
+class Absent extends Error {}
+
+/** The module, fetched at the begin. Where that failed, because the server was gone, the next message tries again. */
+async function opened(): Promise<Door> {
+  door ??= load();
+  try {
+    return await door;
+  } catch (error) {
+    door = undefined;
+    throw error;
+  }
+}
+
+async function load(): Promise<Door> {
+  const answer = await fetch(address).catch(() => {
+    throw new Absent();
+  });
   if (!answer.ok) throw new Error(`g7.wasm: ${answer.status}`);
   // While it streams, it is compiled, and the browser keeps the compiled code for the next visit.
   const streams = answer.headers.get('content-type') === 'application/wasm';
@@ -41,17 +60,18 @@ let turn: Promise<void> = Promise.resolve();
 self.onmessage = (event: MessageEvent<string | { wasm: string } | { speak: string }>) => {
   const said = event.data;
   if (typeof said !== 'string' && 'wasm' in said) {
-    door = load(said.wasm);
+    address = said.wasm;
+    opened().catch(() => undefined);
     return;
   }
   turn = turn.then(async () => {
     try {
-      if (!door) throw new Error('no module');
-      if (typeof said === 'string') self.postMessage(ask(await door, said));
-      else await speak(await door, said.speak);
+      const door = await opened();
+      if (typeof said === 'string') self.postMessage(ask(door, said));
+      else await speak(door, said.speak);
     } catch (error) {
       // Whoever chose a language waits for no answer.
-      if (typeof said === 'string') self.postMessage(JSON.stringify({ no: `The program in the page failed: ${(error as Error).message}` }));
+      if (typeof said === 'string') self.postMessage(error instanceof Absent ? ABSENT : JSON.stringify({ no: `The program in the page failed: ${(error as Error).message}` }));
     }
   });
 };

@@ -3,6 +3,7 @@
 import { differ, type Difference } from '../run/compare';
 import { Run } from '../run/state.svelte';
 import { files, type OpenFile } from './files.svelte';
+import { t } from './i18n';
 import { page, type Move } from './page';
 import type { Frame, ProofScan, Started } from './protocol';
 import { server } from './server';
@@ -259,9 +260,36 @@ class Runs {
     this.#breaks = new Map(this.#breaks).set(file, ids);
   }
 
-  /** A shared run that moves was silent: the connection was lost, or the server restarted. */
+  /** The connection is lost: of shared runs the page has the last frame alone. */
+  lost(): void {
+    for (const run of this.all.filter((r) => r.shared)) {
+      run.away = true;
+      run.playing = false;
+    }
+  }
+
+  /** The server is there again: its runs are watched anew, and those that ended with it are over. */
+  async back(): Promise<void> {
+    const away = this.all.filter((r) => r.away);
+    if (away.length === 0) return;
+    const there = (await server.call({ do: 'runs' })).runs.map((r) => r.run);
+    for (const run of away) {
+      const started = there.includes(run.name) ? await server.call({ do: 'watch', run: run.name }).catch(() => null) : null;
+      if (this.of(run.file) !== run) continue;
+      if (started) {
+        run.away = false;
+        this.#begun(started);
+        this.#paced(run, started.speed);
+      } else {
+        this.#put(run.file, null);
+        shell.say(t('gone.run', { name: run.file }), 'error');
+      }
+    }
+  }
+
+  /** A shared run that moves was silent: its frames were lost. */
   async #again(run: Run): Promise<void> {
-    if (!run.shared || !run.playing || performance.now() - run.heard < SILENT) return;
+    if (!run.shared || run.away || !run.playing || performance.now() - run.heard < SILENT) return;
     try {
       run.begin(await server.call({ do: 'watch', run: run.name }));
     } catch (error) {

@@ -3,6 +3,8 @@
 import type { Wishes } from '../operator/told';
 import type { Draft, DraftRow, End } from './drafts.svelte';
 import { here } from './here';
+import { t } from './i18n';
+import { link, type Linked } from './link.svelte';
 import { opened, Refused, type Door, type Message, type RunName } from './page';
 import type { Answers, Shelved, Started } from './protocol';
 import { prefs } from './prefs.svelte';
@@ -13,6 +15,8 @@ export interface Info {
   version: string;
   read_only: boolean;
   folder: string;
+  /** A name that no other folder has. */
+  place: string;
   /** True if the server drives a machine. */
   online?: boolean;
   start?: string;
@@ -57,9 +61,20 @@ export class Conflict extends Error {
   }
 }
 
+/** There is no connection to the server. */
+export class Gone extends Refused {
+  constructor() {
+    super(t('gone.now'));
+  }
+}
+
 const TOKEN = 'g7-token';
 /** The code with which the server closes a connection whose session is over: the page asks anew who is there. */
 const OVER = 4401;
+/** The wait before the first try to come back, before the next ones, and for an answer, in ms. */
+const SOON = 250;
+const AGAIN = 1000;
+const ANSWER = 5000;
 
 function takeToken(): string {
   const here = new URL(location.href);
@@ -78,6 +93,9 @@ class Server implements Door {
   #examples = new Map<string, string>();
   #token = '';
   #socket: Promise<WebSocket> | null = null;
+  /** The connection was lost, so whoever answers now may be another one: it is not told the token. */
+  #lost = false;
+  #trying = false;
   #waiting = new Map<number, { resolve(v: unknown): void; reject(e: Error): void }>();
   #next = 1;
   #heard = new Set<(message: Record<string, unknown>) => void>();
@@ -94,7 +112,7 @@ class Server implements Door {
       }
       if (answer.status === 401 || answer.status === 403) throw new Refused(await answer.text());
     } catch (error) {
-      if (error instanceof Refused) throw error;
+      if (error instanceof Refused && !(error instanceof Gone)) throw error;
     }
     const answer = await fetch('./examples.json').catch(() => null);
     if (!answer?.ok) return;
@@ -232,13 +250,20 @@ class Server implements Door {
   }
 
   #live(): Promise<WebSocket> {
-    this.#socket ??= new Promise((resolve, reject) => {
+    if (this.#lost) return Promise.reject(new Gone());
+    this.#socket ??= this.#connect();
+    return this.#socket;
+  }
+
+  #connect(): Promise<WebSocket> {
+    return new Promise((resolve, reject) => {
       const address = new URL('api/live', document.baseURI);
       address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
       address.searchParams.set('token', this.#token);
       address.searchParams.set('window', here);
       const socket = new WebSocket(address);
       socket.onopen = () => {
+        link.state = 'up';
         resolve(socket);
         this.#linked.forEach((listener) => listener(true));
       };
@@ -246,14 +271,58 @@ class Server implements Door {
       socket.onclose = (event) => {
         if (event.code === OVER) location.reload();
         this.#socket = null;
-        reject(new Refused('the server is gone'));
-        this.#waiting.forEach((w) => w.reject(new Refused('the server is gone')));
+        reject(new Gone());
+        this.#waiting.forEach((w) => w.reject(new Gone()));
         this.#waiting.clear();
         this.#linked.forEach((listener) => listener(false));
-        setTimeout(() => void this.#live().catch(() => undefined), 2000);
+        void this.#back();
       };
     });
-    return this.#socket;
+  }
+
+  /** Tries to come back until the server of before is there again. */
+  async #back(): Promise<void> {
+    if (this.#trying) return;
+    this.#trying = this.#lost = true;
+    for (let wait = SOON, there = false; !there; wait = AGAIN) {
+      await new Promise((done) => setTimeout(done, wait * (1 + Math.random() / 2)));
+      const found = await this.#found();
+      this.#lost = found !== 'up';
+      if (this.#lost) link.state = found;
+      else there = await (this.#socket ??= this.#connect()).then(() => true, () => false);
+    }
+    this.#trying = false;
+  }
+
+  /** Who is there now. */
+  async #found(): Promise<Linked> {
+    try {
+      // A user has a cookie and no token, and the server a certificate.
+      if (!session.told.users && !(await this.#proves())) return 'strange';
+      const answer = await this.#ask('api/info', { signal: AbortSignal.timeout(ANSWER) });
+      if (answer.status === 401 && session.told.users) location.reload();
+      if (!known(answer)) return 'strange';
+      const info = (await answer.json()) as Info;
+      if (info.place !== this.info?.place) return 'other';
+      if (info.version !== this.info.version) return 'newer';
+      this.info = info;
+      return 'up';
+    } catch {
+      return 'gone';
+    }
+  }
+
+  /** True if whoever answers knows the token without being told it (decision 71). */
+  async #proves(): Promise<boolean> {
+    // Browsers have no hashes in a page of plain HTTP, such as a frame in one: there nothing can be proved.
+    if (!(crypto.subtle as SubtleCrypto | undefined)) return true;
+    const number = hex(crypto.getRandomValues(new Uint8Array(16)));
+    const address = new URL(`api/again?number=${number}`, document.baseURI);
+    const answer = await fetch(address, { signal: AbortSignal.timeout(ANSWER) });
+    if (!known(answer)) return false;
+    const { proofs } = (await answer.json()) as { proofs?: string[] };
+    const port = address.port || (address.protocol === 'https:' ? '443' : '80');
+    return proofs?.includes(await hash(`${await hash(this.#token)}:${port}:${number}`)) ?? false;
   }
 
   #hear(text: string): void {
@@ -272,6 +341,15 @@ class Server implements Door {
   }
 
   async #fetch(path: string, init: RequestInit = {}): Promise<Response> {
+    if (this.#lost) throw new Gone();
+    try {
+      return await this.#ask(path, init);
+    } catch {
+      throw new Gone();
+    }
+  }
+
+  #ask(path: string, init: RequestInit): Promise<Response> {
     const headers = {
       ...(init.headers as Record<string, string>),
       'accept-language': prefs.language,
@@ -287,8 +365,22 @@ class Server implements Door {
   }
 }
 
+/** False if a server refuses what that of before answers; throws if it has no time to answer. */
+function known(answer: Response): boolean {
+  if (answer.status === 429 || answer.status >= 500) throw new Gone();
+  return answer.ok;
+}
+
 function tag(answer: Response): string {
   return (answer.headers.get('etag') ?? '').replace(/^W\//, '').replaceAll('"', '');
+}
+
+function hex(bytes: Uint8Array): string {
+  return [...bytes].map((byte) => byte.toString(16).padStart(2, '0')).join('');
+}
+
+async function hash(text: string): Promise<string> {
+  return hex(new Uint8Array(await crypto.subtle.digest('SHA-256', new TextEncoder().encode(text))));
 }
 
 export const server = new Server();

@@ -1,4 +1,5 @@
 // A running controller as the page knows it. Whatever is older than a moment counts as unknown.
+import { link } from '../lib/link.svelte';
 import { server } from '../lib/server';
 import type { ChartFile, Counts, Description, DeviceState, Event, Forced, Frame, Mode, Quality, Wishes } from './told';
 
@@ -72,6 +73,8 @@ export class Station {
   }
 
   #judge(): void {
+    // Nothing is lost by it here: the page of another version or folder is loaded.
+    if (link.state === 'newer' || link.state === 'other') location.reload();
     if (this.link === 'none' || (this.link === 'begin' && !this.told)) return;
     const heard = this.#up && performance.now() - this.#came < SILENT;
     this.link = !heard ? 'gone' : this.#age > STILL ? 'silent' : 'live';

@@ -63,6 +63,8 @@ export class Run {
   /** True for a shared run of another text than ours, which other clients watch: it is changed only
    * on request. */
   foreign = $state(false);
+  /** True for a shared run while there is no connection: its state is the one that was heard last. */
+  away = $state(false);
   /** The losses of an on-line change, while the user is asked about them. */
   losing: string[] | null = $state.raw(null);
   /** The reason why a changed text cannot be taken over. */

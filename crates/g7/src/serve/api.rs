@@ -43,6 +43,7 @@ async fn info(State(shared): State<Shared>) -> Json<Value> {
         "version": env!("CARGO_PKG_VERSION"),
         "read_only": shared.folder.is_read_only(),
         "folder": shared.title,
+        "place": shared.place,
         "online": shared.station.is_some(),
     });
     if let (Some(start), Some(info)) = (&shared.start, info.as_object_mut()) {

@@ -22,7 +22,8 @@ Examples:
 
 The address printed has a token that is made anew at each start: whoever has it
 reads and writes the charts of the folder, nobody else does, and nothing outside
-the folder is touched. With --users there is no token: people log in, and each does
+the folder is touched. A page that is open goes on when the server of its folder is
+started again within 8 hours at the same port; --forget ends that. With --users there is no token: people log in, and each does
 what the role allows. An address that other machines reach needs users and TLS.
 Ctrl-C ends the server; with --online the outputs are safe then.")]
 pub(crate) struct Serve {
@@ -50,6 +51,9 @@ pub(crate) struct Serve {
     /// Write nothing; charts can still be viewed and run.
     #[arg(long)]
     pub(super) read_only: bool,
+    /// Let in no page of an earlier start: each needs the address that is printed now.
+    #[arg(long, conflicts_with = "users")]
+    pub(super) forget: bool,
     /// Do not open a browser; only print the address.
     #[arg(long)]
     pub(super) no_open: bool,

@@ -1,5 +1,5 @@
-//! Access control: only pages of this server are answered, with the token of this start or the session of a
-//! user whose role allows it.
+//! Access control: only pages of this server are answered, with a token or the session of a user whose role
+//! allows it.
 //!
 //! For every request, including WebSocket upgrades: the named host is an address of this machine or a
 //! name of its certificate (a foreign site could point another name at it), a named origin is that of this
@@ -24,6 +24,7 @@ use super::listen::Peer;
 use super::refusal::Refusal;
 use super::throttle::Throttle;
 use super::tls::Certificate;
+use super::tokens::Tokens;
 use crate::audit::Audit;
 use crate::who::Who;
 
@@ -33,8 +34,8 @@ pub(super) const COOKIE: &str = "__Host-g7";
 /// The pass that lets a request in.
 #[derive(Clone, Debug)]
 pub(super) enum Pass {
-    /// Whoever has the token of this start may do everything.
-    Token(String),
+    /// Whoever has a token may do everything.
+    Tokens(Arc<Tokens>),
     /// Users do what their roles allow.
     Users(Arc<Access>),
 }
@@ -73,6 +74,8 @@ impl Foreign {
 fn needed(method: &Method, path: &str) -> Option<Role> {
     Some(match (method, path) {
         (_, "/api/session" | "/api/login" | "/api/first") => return None,
+        // Whoever asks learns nothing without a token of its own.
+        (&Method::GET, "/api/again") => return None,
         (&Method::GET, "/api/info" | "/api/files" | "/api/file" | "/api/drafts" | "/api/live") => {
             Role::Viewer
         }
@@ -174,7 +177,7 @@ impl Guard {
         };
         let Some(who) = self.known(request)? else {
             let what = match self.pass {
-                Pass::Token(_) => {
+                Pass::Tokens(_) => {
                     say!(
                         "this needs the whole address that `g7 serve` printed when it was started, with its token"
                     )
@@ -191,7 +194,9 @@ impl Guard {
     fn known(&self, request: &Request) -> Result<Option<Who>, Refusal> {
         let from = peer(request);
         match &self.pass {
-            Pass::Token(token) => Ok(has_token(token, request)?.then(|| Who::with_token(from.to_string()))),
+            Pass::Tokens(tokens) => {
+                Ok(has_token(tokens, request)?.then(|| Who::with_token(from.to_string())))
+            }
             Pass::Users(access) => {
                 let Some(secret) = cookie(request.headers()) else { return Ok(None) };
                 Ok(access.who(secret, from))
@@ -242,17 +247,17 @@ impl Guard {
 }
 
 /// The token comes in a header, or in the address if the browser cannot set a header.
-fn has_token(token: &str, request: &Request) -> Result<bool, Refusal> {
+fn has_token(tokens: &Tokens, request: &Request) -> Result<bool, Refusal> {
     let header = only(request.headers(), &header::AUTHORIZATION)?;
     let given = header.and_then(|h| h.strip_prefix("Bearer "));
-    if given.is_some_and(|g| same(g, token)) {
+    if given.is_some_and(|g| tokens.admits(g)) {
         return Ok(true);
     }
     if request.uri().path() != "/api/live" {
         return Ok(false);
     }
     let mut pairs = request.uri().query().unwrap_or("").split('&');
-    Ok(pairs.any(|p| p.strip_prefix("token=").is_some_and(|g| same(g, token))))
+    Ok(pairs.any(|p| p.strip_prefix("token=").is_some_and(|g| tokens.admits(g))))
 }
 
 /// The secret of the session; `None` where there is none, or more than one.
@@ -281,11 +286,6 @@ fn only<'a>(headers: &'a HeaderMap, name: &HeaderName) -> Result<Option<&'a str>
     text.map(Some).ok_or_else(|| Refusal::forbidden(say!("the header `{name}` means nothing")))
 }
 
-/// Compares in constant time, so that the time does not reveal where the texts differ.
-fn same(a: &str, b: &str) -> bool {
-    a.len() == b.len() && a.bytes().zip(b.bytes()).fold(0, |d, (x, y)| d | (x ^ y)) == 0
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -293,7 +293,7 @@ mod tests {
     fn at(bound: &str) -> Guard {
         let bound = bound.parse().expect("an address");
         Guard {
-            pass: Pass::Token(String::new()),
+            pass: Pass::Tokens(Arc::new(Tokens::fresh().expect("a token"))),
             bound,
             certificate: None,
             audit: Audit::default(),

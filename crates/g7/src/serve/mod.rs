@@ -16,7 +16,7 @@
 //! # Invariants
 //!
 //! Nothing is answered without the right host and origin; nothing except the page itself is
-//! answered without the token of this start, or a session of a user whose role allows it (`guard`).
+//! answered without a token (`tokens`), or a session of a user whose role allows it (`guard`).
 //! Whoever is reached from other machines has TLS and users, or does not start (`rules`).
 //! Only the given folder is read or written; links that lead out of it are refused (`folder`).
 //! Whatever clients do, runs go on and memory stays bounded (`outbox`, `desk`).
@@ -48,11 +48,13 @@ mod rules;
 mod runs;
 mod shared;
 mod shelf;
+mod state;
 mod system;
 #[cfg(test)]
 mod tests;
 mod throttle;
 mod tls;
+mod tokens;
 mod watch;
 mod wiring;
 
@@ -83,6 +85,7 @@ use places::Places;
 use rules::Rules;
 use runs::Runs;
 use shared::{Clients, Inner, Limits, Shared};
+use tokens::{Shelf, Tokens};
 use watch::Watch;
 
 /// The port that is tried first if none is given.
@@ -130,6 +133,7 @@ fn shared(
         title: project.name.unwrap_or_else(|| root.display().to_string()),
         start,
         page: page.transpose()?,
+        place: state::name_of(folder.root()),
         drafts: Drafts::of(folder.root(), state),
         watch: Watch::new(Arc::clone(&folder)),
         folder,
@@ -148,6 +152,10 @@ fn shared(
 
 /// All addresses, behind the guard.
 fn app(shared: Shared, guard: Guard) -> Router {
+    let again = match &guard.pass {
+        Pass::Tokens(tokens) => tokens::routes(Arc::clone(tokens), guard.bound),
+        Pass::Users(_) => Router::new(),
+    };
     Router::new()
         .merge(api::routes())
         .merge(drafts::routes::routes())
@@ -157,6 +165,7 @@ fn app(shared: Shared, guard: Guard) -> Router {
         .route("/api/live", get(live::live))
         .fallback(get(assets::asset))
         .with_state(shared)
+        .merge(again)
         .layer(axum::middleware::from_fn_with_state(guard, guard::guard))
         .layer(axum::middleware::from_fn(refusal::translate))
 }
@@ -187,24 +196,15 @@ async fn tell_changes(shared: Shared) {
     }
 }
 
-/// The token of this start.
-fn token() -> Result<String, Failure> {
-    let mut bytes = [0u8; 24];
-    getrandom::fill(&mut bytes)
-        .map_err(|e| Failure::Usage(say!("the system gives no random numbers: {e}", e = raw(e))))?;
-    Ok(bytes.iter().map(|b| format!("{b:02x}")).collect())
-}
-
-/// Binds the given port; otherwise the default port or any free one.
-async fn bind(host: IpAddr, port: Option<u16>) -> Result<TcpListener, Failure> {
+/// Binds the given port; otherwise the one where pages of this folder wait, the default port, or any free one.
+async fn bind(host: IpAddr, port: Option<u16>, waiting: Option<u16>) -> Result<TcpListener, Failure> {
     let at = |port| TcpListener::bind(SocketAddr::new(host, port));
-    let bound = match port {
-        Some(port) => at(port).await,
-        None => match at(PORT).await {
-            Ok(listener) => Ok(listener),
-            Err(_) => at(0).await,
-        },
-    };
+    let mut bound = at(port.or(waiting).unwrap_or(PORT)).await;
+    for next in [PORT, 0] {
+        if port.is_none() && bound.is_err() {
+            bound = at(next).await;
+        }
+    }
     bound.map_err(|e| {
         let port = port.unwrap_or(PORT);
         Failure::Usage(say!(
@@ -216,14 +216,18 @@ async fn bind(host: IpAddr, port: Option<u16>) -> Result<TcpListener, Failure> {
     })
 }
 
-/// Looks for changes of the users and of the certificate.
-async fn look_after(rules: Rules) {
+/// Looks for changes of the users and of the certificate, and notes which tokens were used.
+async fn look_after(rules: Rules, tokens: Option<Arc<Tokens>>) {
     let mut tick = tokio::time::interval(LOOK_USERS);
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
     loop {
         tick.tick().await;
-        let rules = rules.clone();
-        tokio::task::spawn_blocking(move || rules.look()).await.ok();
+        let (rules, tokens) = (rules.clone(), tokens.clone());
+        let look = move || {
+            rules.look();
+            tokens.iter().for_each(|tokens| tokens.look());
+        };
+        tokio::task::spawn_blocking(look).await.ok();
     }
 }
 
@@ -231,13 +235,13 @@ async fn look_after(rules: Rules) {
 struct Open {
     runtime: Option<Runtime>,
     bound: SocketAddr,
-    /// The token of this start, where there are no users.
-    token: Option<String>,
+    /// The tokens that let in, where there are no users.
+    tokens: Option<Arc<Tokens>>,
 }
 
 impl Open {
     /// Listens, and answers from here on.
-    fn new(shared: &Shared, rules: &Rules) -> Result<Open, Failure> {
+    fn new(shared: &Shared, rules: &Rules, forget: bool) -> Result<Open, Failure> {
         system::room_for(shared.limits.clients);
         let mut threads = tokio::runtime::Builder::new_multi_thread();
         if shared.station.is_some() {
@@ -246,20 +250,25 @@ impl Open {
         let runtime = threads.enable_all().worker_threads(2).build();
         let runtime =
             runtime.map_err(|e| Failure::Usage(say!("the server cannot start: {e}", e = raw(&e))))?;
-        let listener = runtime.block_on(bind(rules.host, rules.port))?;
+        // Whoever operates a machine begins anew with it: a controller knows the token of its own start alone.
+        let state = if shared.station.is_some() || rules.access.is_some() { None } else { state::folder() };
+        let shelf = state.map(|state| Shelf::of(shared.folder.root(), &state));
+        let waiting = shelf.as_ref().filter(|_| !forget).and_then(|shelf| shelf.port(rules.host));
+        let listener = runtime.block_on(bind(rules.host, rules.port, waiting))?;
         let bound = listener.local_addr()?;
-        let (pass, token) = match &rules.access {
-            Some(access) => (Pass::Users(Arc::clone(access)), None),
-            None => {
-                let token = token()?;
-                (Pass::Token(token.clone()), Some(token))
+        let (pass, tokens) = match (&rules.access, shelf) {
+            (Some(access), _) => (Pass::Users(Arc::clone(access)), None),
+            (None, shelf) => {
+                let kept = |shelf| Tokens::kept(shelf, bound, forget);
+                let tokens = Arc::new(shelf.map_or_else(Tokens::fresh, kept)?);
+                (Pass::Tokens(Arc::clone(&tokens)), Some(tokens))
             }
         };
         let app = app(Arc::clone(shared), rules.guard(pass, bound));
         runtime.spawn(tell_changes(Arc::clone(shared)));
-        runtime.spawn(look_after(rules.clone()));
+        runtime.spawn(look_after(rules.clone(), tokens.clone()));
         runtime.spawn(listen::listen(listener, app, rules.door()?));
-        Ok(Open { runtime: Some(runtime), bound, token })
+        Ok(Open { runtime: Some(runtime), bound, tokens })
     }
 
     /// Tells the user where the page is.
@@ -267,8 +276,8 @@ impl Open {
         let page = if shared.station.is_some() { "operator" } else { "" };
         let scheme = if rules.certificate.is_some() { "https" } else { "http" };
         let mut address = format!("{scheme}://{}/{page}", shown(self.bound));
-        if let Some(token) = &self.token {
-            address = format!("{address}?token={token}");
+        if let Some(tokens) = &self.tokens {
+            address = format!("{address}?token={}", tokens.own());
         }
         let title = raw(&shared.title);
         tell(if args.read_only { say!("G7 serves {title}, read-only") } else { say!("G7 serves {title}") });
@@ -306,8 +315,8 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
     let (_log, audit) = log.map_or_else(Default::default, |(log, audit)| (Some(log), audit));
     let rules = Rules::of(args, None, &audit, args.log.clone())?;
     let limits = rules.limits(Limits::default());
-    let shared = shared(args, limits, drafts::state_folder().as_deref(), None, &rules)?;
-    let open = Open::new(&shared, &rules)?;
+    let shared = shared(args, limits, state::folder().as_deref(), None, &rules)?;
+    let open = Open::new(&shared, &rules, args.forget)?;
     open.tell(args, &shared, &rules)?;
     if let Some(runtime) = &open.runtime {
         runtime.block_on(tokio::signal::ctrl_c())?;
@@ -324,9 +333,9 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let rules = Rules::of(args, Some((&setup.server, &io)), &audit, log_file)?;
     let (station, orders) = Stage::door();
     let limits = rules.limits(Limits::beside_a_machine());
-    let shared = shared(args, limits, drafts::state_folder().as_deref(), Some(station), &rules)?;
+    let shared = shared(args, limits, state::folder().as_deref(), Some(station), &rules)?;
     // A port that is taken is found before anything moves.
-    let open = Open::new(&shared, &rules)?;
+    let open = Open::new(&shared, &rules, args.forget)?;
     let users = args.users.clone().or(users);
     let (plant, users, logged) = (args.plant.as_deref(), users.as_deref(), audit.is_kept());
     let more = More { plant, users, logged, ..More::default() };

@@ -75,6 +75,8 @@ pub(super) struct Inner {
     pub(super) folder: Arc<Folder>,
     /// The folder as the user named it.
     pub(super) title: String,
+    /// A name that no other folder has.
+    pub(super) place: String,
     /// The chart to open first.
     pub(super) start: Option<String>,
     pub(super) page: Option<PathBuf>,

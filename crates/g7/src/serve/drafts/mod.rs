@@ -32,6 +32,7 @@ use serde::{Deserialize, Serialize};
 use super::file_names;
 use super::fingerprint;
 use super::refusal::Refusal;
+use super::state;
 use file::Head;
 pub(super) use owners::{Owner, Owners};
 
@@ -104,13 +105,7 @@ impl Drafts {
     /// The copies for a folder, below the system's place for data of programs.
     pub(super) fn of(root: &Path, state: Option<&Path>) -> Drafts {
         let folder = match state {
-            Some(state) => {
-                let name = root.file_name().unwrap_or_default().to_string_lossy();
-                let plain: String =
-                    name.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '-').take(40).collect();
-                let hash = fingerprint::hash(root.as_os_str().as_encoded_bytes());
-                state.join("g7").join("drafts").join(format!("{plain}-{hash}"))
-            }
+            Some(state) => state.join("g7").join("drafts").join(state::name_of(root)),
             None => root.join(".g7").join("drafts"),
         };
         let owners = Arc::new(Owners::new(&folder));
@@ -279,7 +274,7 @@ impl Drafts {
             let text = say!("there are too many unsaved copies: delete some of the list “Unsaved work”");
             return Err(Refusal::new(StatusCode::INSUFFICIENT_STORAGE, text));
         }
-        make_folder(&folder)
+        state::make(&folder)
             .map(|()| self.owners.show())
             .and_then(|()| g7_host::write_whole(place, &bytes))
             .map_err(|e| Refusal::io(&head.path, &e))
@@ -351,31 +346,4 @@ fn name(place: &Path) -> String {
 /// The name of a copy that was closed at a time.
 fn aside(own: &Path, at: u64) -> String {
     format!("{}-{at:x}", name(own))
-}
-
-/// The texts may be private: only their owner may read them.
-fn make_folder(folder: &Path) -> io::Result<()> {
-    let mut builder = fs::DirBuilder::new();
-    builder.recursive(true);
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::DirBuilderExt as _;
-        builder.mode(0o700);
-    }
-    builder.create(folder)
-}
-
-/// The system's place for data that programs keep.
-pub(super) fn state_folder() -> Option<PathBuf> {
-    let var = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|p| p.is_absolute());
-    if let Some(state) = var("XDG_STATE_HOME") {
-        return Some(state);
-    }
-    if cfg!(windows) {
-        var("LOCALAPPDATA")
-    } else if cfg!(target_os = "macos") {
-        Some(var("HOME")?.join("Library").join("Application Support"))
-    } else {
-        Some(var("HOME")?.join(".local").join("state"))
-    }
 }

@@ -36,8 +36,9 @@ async fn without_the_token_of_this_start_nothing_is_told() {
 
 #[tokio::test]
 async fn two_starts_have_two_tokens() {
-    assert_ne!(token().expect("a token"), token().expect("a token"));
-    assert_eq!(token().expect("a token").len(), 48);
+    let own = || Tokens::fresh().expect("a token").own().to_owned();
+    assert_ne!(own(), own());
+    assert_eq!(own().len(), 48);
 }
 
 #[tokio::test]
@@ -162,4 +163,24 @@ async fn without_a_page_it_is_said_how_to_build_one() {
     let server = Server::new().await;
     let reply = server.get("/").await.is(503);
     assert!(reply.text().contains("make web"), "{}", reply.text());
+}
+
+#[tokio::test]
+async fn a_server_proves_that_it_knows_the_token_before_it_is_told() {
+    use sha2::{Digest as _, Sha256};
+    let hex = |text: &str| Sha256::digest(text).iter().map(|b| format!("{b:02x}")).collect::<String>();
+    let server = Server::new().await;
+    let host = server.bound.to_string();
+    let ask = async |number: &str| {
+        let path = format!("/api/again?number={number}");
+        server.bare("GET", &path, &[("Host", &host)], "").await
+    };
+    let number = "00112233445566778899aabbccddeeff";
+    let awaited = hex(&format!("{}:{}:{number}", hex(&server.token), server.bound.port()));
+    assert_eq!(ask(number).await.is(200).json(), json!({ "proofs": [awaited] }));
+    for wrong in ["", "00", &format!("{number}00"), &format!("{}zz", &number[..30])] {
+        ask(wrong).await.is(400);
+    }
+    let foreign = [("Host", host.as_str()), ("Origin", "http://evil.example")];
+    server.bare("GET", &format!("/api/again?number={number}"), &foreign, "").await.is(403);
 }

@@ -106,6 +106,7 @@ fn args_of(folder: &Path) -> Serve {
         key: None,
         log: None,
         read_only: false,
+        forget: false,
         no_open: true,
         framed: None,
         start: None,
@@ -113,6 +114,11 @@ fn args_of(folder: &Path) -> Serve {
         plant: None,
         page_dir: None,
     }
+}
+
+/// A pass by a token that no test knows.
+fn some_pass() -> Pass {
+    Pass::Tokens(Arc::new(Tokens::fresh().expect("a token")))
 }
 
 /// An answer from its bytes.
@@ -150,8 +156,9 @@ impl Server {
             shared(&args, limits, Some(&root.join("state")), None, &rules).expect("a folder to serve");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
         let bound = listener.local_addr().expect("an address");
-        let token = token().expect("a token");
-        let app = app(Arc::clone(&shared), rules.guard(Pass::Token(token.clone()), bound));
+        let tokens = Tokens::fresh().expect("a token");
+        let token = tokens.own().to_owned();
+        let app = app(Arc::clone(&shared), rules.guard(Pass::Tokens(Arc::new(tokens)), bound));
         let of = Arc::clone(&shared);
         let task = tokio::spawn(async move {
             tokio::select! {

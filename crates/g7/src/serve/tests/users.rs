@@ -89,7 +89,7 @@ impl Site {
         let task = tokio::spawn(async move {
             tokio::select! {
                 () = listen::listen(listener, app, door) => {}
-                () = look_after(of) => {}
+                () = look_after(of, None) => {}
             }
         });
         let server = Server { bound, token: String::new(), root, shared, task };
@@ -438,7 +438,7 @@ async fn row_22_without_tls_a_crowd_hears_429() {
     let bound = listener.local_addr().expect("an address");
     let rules =
         Rules::of(&args_of(&server.root.join("charts")), None, &Audit::default(), None).expect("they fit");
-    let app = app(Arc::clone(&server.shared), rules.guard(Pass::Token("t".to_owned()), bound));
+    let app = app(Arc::clone(&server.shared), rules.guard(some_pass(), bound));
     // Those who hold the places are quiet, and keep them.
     let door = Door { from_one: 8, quiet: PATIENCE, ..Door::default() };
     let task = tokio::spawn(listen::listen(listener, app, door));
