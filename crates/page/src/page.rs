@@ -34,7 +34,11 @@ pub struct Page {
     language: Language,
     /// The texts of files that open files use, as they are on the disk; `None` for a file that is not there.
     texts: BTreeMap<String, Option<Arc<str>>>,
+    goes_on: Option<GoesOn>,
 }
+
+/// Asked after each scan of a message: false ends its scans, however many are due.
+type GoesOn = Box<dyn FnMut() -> bool + Send>;
 
 fn not_open(file: &str) -> Said {
     say!("{} is not open", Said::foreign(file))
@@ -68,6 +72,15 @@ impl Page {
             },
         };
         answer::text(answer.map_err(|no| no.in_language(self.language)))
+    }
+
+    /// The same, for a caller who cannot wait for all scans that are due: they end after the one at which `goes_on` says
+    /// no, and the run is late. One scan is made in any case.
+    pub fn call_while(&mut self, message: &str, goes_on: impl FnMut() -> bool + Send + 'static) -> String {
+        self.goes_on = Some(Box::new(goes_on));
+        let answer = self.call(message);
+        self.goes_on = None;
+        answer
     }
 
     /// Answers a request, or says that the other module does.
@@ -380,7 +393,9 @@ impl Answers for Page {
         most_scans: Option<u32>,
         times: bool,
     ) -> Result<Frame, Said> {
-        self.with(&run, times, |r| r.advance(ms, most_scans))
+        let mut goes_on = self.goes_on.take();
+        let goes_on = || goes_on.as_mut().is_none_or(|goes_on| goes_on());
+        self.with(&run, times, |r| r.advance(ms, most_scans, goes_on))
     }
 
     fn run_scan(&mut self, run: String, times: bool) -> Result<Frame, Said> {

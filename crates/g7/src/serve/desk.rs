@@ -2,7 +2,7 @@
 //!
 //! Frames are sent to every watcher in the order of the events, so that all see the same. The speed
 //! follows absolute instants of the wall clock, whatever messages come in between. A run that is
-//! too heavy for its speed becomes slower but still answers.
+//! too heavy for its speed becomes slower but still answers: its scans take at most half of a tick, or one scan.
 
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::sync::{Arc, Weak};
@@ -24,8 +24,10 @@ use super::registry::{Order, Registry, What};
 const TICK: Nanos = Nanos::from_millis(40);
 /// If only the time has changed, every n-th advance is shown.
 const QUIET: u32 = 5;
-/// Greatest number of scans of one advance.
-const SCANS: u32 = 20_000;
+/// Longest time of the scans of one advance: the rest of the tick is for orders.
+const SCANS: Nanos = Nanos::from_millis(20);
+/// The same of an order that makes scans: other orders wait for it.
+const ASKED: Nanos = Nanos::from_millis(2_000);
 /// Greatest length of an answer, in bytes.
 const LARGEST: usize = 16 << 20;
 
@@ -46,8 +48,6 @@ pub(super) struct Desk {
     wall: WallClock,
     /// The instant of the wall clock at which the run is advanced next.
     due: Nanos,
-    /// Greatest number of scans in the next advance; adapted so that an advance stays short.
-    most: u32,
     /// Number of advances since the last frame was shown.
     quiet: u32,
 }
@@ -56,8 +56,6 @@ pub(super) struct Desk {
 #[derive(Deserialize)]
 struct Peek {
     now_ms: f64,
-    #[serde(default)]
-    late: bool,
     stopped: Option<IgnoredAny>,
     halt: Option<IgnoredAny>,
     on: Vec<IgnoredAny>,
@@ -99,7 +97,6 @@ impl Desk {
             given: Nanos::ZERO,
             wall: WallClock::default(),
             due: Nanos::ZERO,
-            most: SCANS,
             quiet: 0,
         }
     }
@@ -177,7 +174,7 @@ impl Desk {
             return self.page.call(message);
         }
         let Some(text) = text else {
-            let answer = self.page.call(message);
+            let answer = self.within(ASKED, message);
             self.spread(by, &what, &answer);
             return answer;
         };
@@ -258,8 +255,8 @@ impl Desk {
         let now = self.clock.now();
         let ms = (now - self.given).as_millis();
         self.given = now;
-        let message = json!({ "do": "run_advance", "run": *self.run, "ms": ms, "most_scans": self.most, "times": true });
-        let answer = self.page.call(&message.to_string());
+        let message = json!({ "do": "run_advance", "run": *self.run, "ms": ms, "times": true });
+        let answer = self.within(SCANS, &message.to_string());
         let Some((told, peek)) =
             ok(&answer).and_then(|t| Some((t, serde_json::from_str::<Peek>(t.get()).ok()?)))
         else {
@@ -267,12 +264,6 @@ impl Desk {
             self.pace(0.0);
             return;
         };
-        let took = self.wall.now() - began;
-        if took > TICK {
-            self.most = (self.most / 2).max(1);
-        } else if peek.late && took < TICK / 4 {
-            self.most = (self.most * 2).min(SCANS);
-        }
         self.quiet += 1;
         if peek.is_news() || (self.quiet >= QUIET && peek.now_ms >= 0.0) {
             self.quiet = 0;
@@ -281,6 +272,12 @@ impl Desk {
         if peek.ends() {
             self.pace(0.0);
         }
+    }
+
+    /// Calls the page; scans that take longer than this end early, after a whole scan.
+    fn within(&mut self, time: Nanos, message: &str) -> String {
+        let (mut wall, end) = (self.wall, self.wall.now() + time);
+        self.page.call_while(message, move || wall.now() < end)
     }
 
     /// Sends changes that were not sent yet to all watchers.
@@ -307,7 +304,6 @@ impl Desk {
             self.clock.hold(false);
             self.given = self.clock.now();
             self.due = self.wall.now() + TICK;
-            self.most = SCANS;
         } else {
             self.clock.hold(true);
         }

@@ -90,15 +90,20 @@ impl Run {
         self.bench.items.get(signal).ok_or_else(|| say!("there is no such signal"))
     }
 
-    /// Advances the virtual time, scan by scan, until a breakpoint is met.
-    pub(crate) fn advance(&mut self, ms: f64, most: Option<u32>) -> Result<(), Said> {
+    /// Advances the virtual time, scan by scan, until a breakpoint is met or `goes_on` says no.
+    pub(crate) fn advance(
+        &mut self,
+        ms: f64,
+        most: Option<u32>,
+        mut goes_on: impl FnMut() -> bool,
+    ) -> Result<(), Said> {
         self.only_now()?;
         self.clock = self.clock.max(self.now) + times::time(ms).max(Nanos::ZERO);
         self.late = false;
         let most = most.unwrap_or(SCANS).min(SCANS);
         let mut made = 0;
         while self.runner.due() <= self.clock {
-            if made >= most {
+            if made >= most || (made > 0 && !goes_on()) {
                 (self.clock, self.late) = (self.now, true);
                 break;
             }

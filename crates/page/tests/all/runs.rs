@@ -353,6 +353,26 @@ fn a_fault_is_told_with_its_place() {
 }
 
 #[test]
+fn scans_end_early_for_a_caller_who_cannot_wait() {
+    let (mut page, started) = started(CHART);
+    let mut scans = started["frame"]["scans"].as_u64().expect("a number");
+    let message = json!({ "do": "run_advance", "run": "r", "ms": 1e9 });
+    for (more, made) in [(3, 4), (0, 1)] {
+        let mut left = more;
+        let goes_on = move || {
+            left -= 1;
+            left >= 0
+        };
+        let frame = page.while_(&message, goes_on);
+        scans += made;
+        assert_eq!((&frame["late"], &frame["scans"]), (&json!(true), &json!(scans)), "{more}");
+    }
+    // The time that was due then is given up, and nobody is asked any more.
+    let next = page.ok(json!({ "do": "run_advance", "run": "r", "ms": 0.0 }));
+    assert_ne!(next["late"], true);
+}
+
+#[test]
 fn long_runs_stay_within_bounds() {
     let (mut page, _) = started(CHART);
     for k in 0..200 {

@@ -111,6 +111,26 @@ async fn what_one_page_does_the_others_are_told() {
 }
 
 #[tokio::test]
+async fn a_run_that_is_too_heavy_for_its_speed_answers_between_its_scans() {
+    let server = Server::new().await;
+    let text = format!("var s, i : DINT\npost {{ FOR i := 1 TO 20000 DO s := s / 2 + i; END_FOR }}\n{CHART}");
+    let mut page = server.live().await;
+    let start = json!({ "do": "run_start", "run": "a", "file": "chart.g7", "text": text });
+    let one = page.call(start).await;
+    let begun = std::time::Instant::now();
+    // After a tick 4000 scans are due, which take minutes; those of 20 ms are made.
+    page.call(json!({ "do": "pace", "run": "a", "speed": 1000 })).await;
+    page.hear_of("frame").await;
+    page.call(json!({ "do": "pace", "run": "a", "speed": 0 })).await;
+    assert!(begun.elapsed() < Duration::from_secs(30), "{:?}", begun.elapsed());
+    // So does an order that asks for many at once.
+    let frame = page.call(json!({ "do": "run_advance", "run": "a", "ms": 1e9 })).await;
+    assert_eq!((&frame["late"], &frame["halt"]), (&json!(true), &Value::Null));
+    assert!(begun.elapsed() < Duration::from_secs(60), "{:?}", begun.elapsed());
+    assert!(frame["scans"].as_u64() > one["frame"]["scans"].as_u64());
+}
+
+#[tokio::test]
 async fn all_who_watch_see_the_same() {
     let server = Server::new().await;
     let (mut one, mut two, mut three) = (server.live().await, server.live().await, server.live().await);

@@ -19,6 +19,16 @@ impl Asked {
         }
     }
 
+    /// The same, with scans that end when `goes_on` says no.
+    pub(crate) fn while_(
+        &mut self,
+        message: &Value,
+        goes_on: impl FnMut() -> bool + Send + 'static,
+    ) -> Value {
+        let answer = self.0.call_while(&message.to_string(), goes_on);
+        serde_json::from_str::<Value>(&answer).expect("an answer is JSON")["ok"].take()
+    }
+
     /// The answer to a message that must be accepted.
     pub(crate) fn ok(&mut self, message: Value) -> Value {
         self.ask(message.clone()).unwrap_or_else(|no| panic!("{message}: {no}"))
