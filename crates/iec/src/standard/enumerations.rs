@@ -389,14 +389,14 @@ impl<'a> Looking<'a> {
         let used: BTreeSet<&str> = all().map(|(_, of)| of).collect();
         let hidden: BTreeSet<&str> =
             all().filter(|(n, _)| self.locals.contains(*n)).map(|(_, of)| of).collect();
-        let stays = |name: &&Box<str>| {
-            used.contains(&***name)
-                && !hidden.contains(&***name)
-                && !self.nameless.contains(*name)
-                && !self.variables.unclear.contains(*name)
-                && self.named.get(*name) == self.right.get(*name)
+        let stays = |name: &str| {
+            used.contains(name)
+                && !hidden.contains(name)
+                && !self.nameless.contains(name)
+                && !self.variables.unclear.contains(name)
+                && self.named.get(name) == self.right.get(name)
         };
-        self.counts.keys().filter(stays).cloned().collect()
+        self.counts.keys().filter(|name| stays(name)).cloned().collect()
     }
 
     fn of(&self, e: &Expr) -> Option<Box<str>> {
