@@ -256,16 +256,6 @@ pub struct VarDecl {
 }
 
 impl VarDecl {
-    /// See [`Limits::values`].
-    pub fn values(&self) -> &[(Name, Option<Expr>)] {
-        self.limits.as_deref().map_or(&[], Limits::values)
-    }
-
-    /// See [`Limits::range`].
-    pub fn range(&self) -> Option<(i128, i128)> {
-        self.limits.as_deref().and_then(Limits::range)
-    }
-
     /// Variables with names and a type alone.
     pub fn new(kind: VarKind, names: Vec<Name>, ty: Type, at: Place) -> VarDecl {
         VarDecl {

@@ -11,7 +11,8 @@ use g7_model::{
 };
 
 use super::bodies::{At, MOST_CONSTANTS};
-use super::lower::{Drive, Form, Formula, Lower};
+use super::form::Form;
+use super::lower::{Drive, Formula, Lower};
 use crate::nodes;
 use crate::scopes::{Ref, StepKey, VarKey};
 

@@ -8,7 +8,8 @@ use g7_model::{
 };
 
 use super::bodies::At;
-use super::lower::{DEEPEST, Form, Lower};
+use super::form::Form;
+use super::lower::{DEEPEST, Lower};
 use crate::nodes;
 use crate::scopes::{Ref, StepKey};
 

@@ -12,7 +12,8 @@ use g7_model::{
 };
 
 use super::bodies::{At, MOST_CONSTANTS};
-use super::lower::{Form, Lower};
+use super::form::Form;
+use super::lower::Lower;
 use crate::nodes;
 use crate::scopes::{Ref, StepKey, VarKey};
 
@@ -186,6 +187,36 @@ impl<'d> Lower<'d> {
             let path: Vec<&str> = unit.into_iter().chain([own]).chain(member.as_deref()).collect();
             body.push(nodes::assign(nodes::name(&[name], at), nodes::name(&path, at), at));
         }
+    }
+
+    /// The variables that conditions of actions read copies of.
+    pub(super) fn copied_in_conditions(&self) -> HashSet<VarKey<'d>> {
+        struct Paths(Vec<Path>);
+        impl Visitor for Paths {
+            fn path(&mut self, path: &mut Path, _: Use, _: Span) {
+                self.0.push(path.clone());
+            }
+        }
+        let mut all = HashSet::new();
+        for (number, chart) in self.scopes.charts.iter().enumerate() {
+            let mut paths = Paths(Vec::new());
+            for action in chart.steps().flat_map(|s| &s.actions) {
+                if let ActionKind::Qualified { condition: Some(e), .. }
+                | ActionKind::EachScan { condition: Some(e), .. } = &action.kind
+                {
+                    visit_mut::expr(&mut e.clone(), &mut paths);
+                }
+            }
+            all.extend(paths.0.iter().filter_map(
+                |path| match self.scopes.refer(Some(number), &path.names) {
+                    Some(Ref::Var(key) | Ref::Bit(key, _)) => {
+                        Some(key).filter(|key| self.moved.contains(key))
+                    }
+                    _ => None,
+                },
+            ));
+        }
+        all
     }
 
     /// The variables that actions drive or bodies of charts write, and the instances that these call.

@@ -14,8 +14,8 @@ use g7_model::{
     Problem, Span, Stmt, StmtKind, Type, VarDecl, VarKind, named::numbered,
 };
 
+use super::form::Form;
 use super::identifiers::Names;
-use super::lower::Form;
 use crate::nodes;
 use crate::report::renamed;
 
@@ -173,7 +173,7 @@ enum Home {
     Block(Box<str>),
 }
 
-/// What a declaration tells here.
+/// A declaration, as far as it matters here.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 struct Declared {
     /// The enumeration of a variable.

@@ -8,44 +8,14 @@ use g7_model::{
 };
 
 use super::blocks::Blocks;
+use super::form::Form;
 use super::identifiers::{Names, Owner};
 use super::structures::{Structures, Whole};
 use crate::report::renamed;
 use crate::scopes::{Ref, Scopes, StepKey, VarKey};
-use crate::words;
 
 /// The deepest nesting of macro-steps.
 pub(super) const DEEPEST: usize = 20;
-
-/// The kind of program that the format has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Form {
-    /// Charts with the same period are networks of one program, with expansions in line. If it is `drawn`, tools
-    /// make a variable of each step.
-    Networks { drawn: bool },
-    /// Each chart is a program, with macro-steps.
-    Charts,
-    /// The same, with the variables of each chart in its program: others use them by its name, as in CODESYS.
-    /// Bodies end with their step if those of the document do (`no-final-scan`).
-    Codesys { bare: bool },
-}
-
-impl Form {
-    /// The words that nothing may be called.
-    pub(super) fn words(self) -> HashSet<&'static str> {
-        if self.is_of_matiec() { words::of_matiec().collect() } else { words::everywhere().collect() }
-    }
-
-    /// True if matiec reads what is written, itself or for another tool.
-    pub(super) fn is_of_matiec(self) -> bool {
-        !matches!(self, Form::Codesys { .. })
-    }
-
-    /// True if expansions stand in line, in networks of one program.
-    pub(super) fn in_line(self) -> bool {
-        matches!(self, Form::Networks { .. })
-    }
-}
 
 /// A document that is being rewritten.
 pub(super) struct Lower<'d> {
@@ -207,7 +177,10 @@ impl<'d> Lower<'d> {
         lower.driven_by = lower.drives();
         lower.uses = lower.used();
         lower.moved = lower.moving();
-        lower.whole = Whole::of(&lower, structures);
+        // A copy of a member of all elements is no array of structures.
+        let copied = lower.copied_in_conditions().into_iter().filter(|key| key.1.contains(']'));
+        let apart = lower.driven_by.keys().copied().chain(copied);
+        lower.whole = Whole::of(document, &lower.scopes, structures, apart);
         lower.whole.all_or_none(&mut lower.shared);
         lower.name();
         lower

@@ -24,6 +24,7 @@ mod blocks;
 mod bodies;
 mod counts;
 mod enumerations;
+mod form;
 mod identifiers;
 mod idle;
 mod instances;
@@ -42,9 +43,9 @@ use crate::signs;
 use blocks::Blocks;
 pub(crate) use counts::LONGEST;
 use enumerations::Enumerations;
+pub(crate) use form::Form;
 use identifiers::Names;
 pub(crate) use idle::without_idle;
-pub(crate) use lower::Form;
 use lower::Lower;
 use structures::Structures;
 

@@ -8,18 +8,17 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    ActionKind, Arg, Array, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Path, Place, Problem,
-    Span, Type, VarDecl, VarKind, bare, composed::DEEP, with_slot,
+    Arg, Array, ChartItem, Composed, Document, Expr, ExprKind, Item, Name, Path, Place, Problem, Span, Type,
+    VarDecl, VarKind, bare, composed::DEEP, with_slot,
 };
 
 use super::blocks::{Blocks, typed};
 use super::enumerations::Enumerations;
+use super::form::Form;
 use super::identifiers::Names;
-use super::lower::{Form, Lower};
 use crate::report::renamed;
-use crate::scopes::{Ref, VarKey};
+use crate::scopes::{Scopes, VarKey};
 
 /// The structures of a document.
 pub(super) struct Structures<'d> {
@@ -328,25 +327,24 @@ pub(super) struct Whole<'d> {
 }
 
 impl<'d> Whole<'d> {
-    /// The variables of a document with a structure that can stay.
-    pub(super) fn of(lower: &Lower<'d>, structures: &Structures<'_>) -> Whole<'d> {
+    /// The variables of a document with a structure that can stay. Those of which a member is `apart` cannot.
+    pub(super) fn of(
+        document: &'d Document,
+        scopes: &Scopes<'d>,
+        structures: &Structures<'_>,
+        apart: impl Iterator<Item = VarKey<'d>>,
+    ) -> Whole<'d> {
         let mut found: BTreeMap<VarKey<'d>, Vec<&'d VarDecl>> = BTreeMap::new();
-        let items = lower.document.items.iter();
-        let of_file = items.filter_map(|i| if let Item::Var(v) = i { Some((None, v)) } else { None });
-        let charts = lower.scopes.charts.iter().enumerate();
+        let of_file =
+            document.items.iter().filter_map(|i| if let Item::Var(v) = i { Some((None, v)) } else { None });
+        let charts = scopes.charts.iter().enumerate();
         let of_charts = charts.flat_map(|(n, c)| c.vars().map(move |v| (Some(n), v)));
         for (chart, v) in of_file.chain(of_charts) {
             if let Some((root, _)) = parted(v) {
                 found.entry((chart, root)).or_default().push(v);
             }
         }
-        if found.is_empty() {
-            return Whole::default();
-        }
-        // A copy of a member of all elements is no array there.
-        let copied =
-            lower.in_conditions().into_iter().filter(|key| key.1.contains(']') && lower.moved.contains(key));
-        let apart: HashSet<VarKey> = lower.driven_by.keys().copied().chain(copied).map(root).collect();
+        let apart: HashSet<VarKey> = apart.map(root).collect();
         let mut whole = Whole::default();
         for (key, members) in found.into_iter().filter(|(key, _)| !apart.contains(key)) {
             whole.members.extend(stays(key, &members, structures).into_iter().flatten());
@@ -366,36 +364,6 @@ impl<'d> Whole<'d> {
         let behind = self.members.get(&key)?;
         let (name, slot) = bare(root(key).1);
         Some((name, slot, behind))
-    }
-}
-
-impl<'d> Lower<'d> {
-    /// The variables in the conditions of actions.
-    fn in_conditions(&self) -> HashSet<VarKey<'d>> {
-        struct Paths(Vec<Path>);
-        impl Visitor for Paths {
-            fn path(&mut self, path: &mut Path, _: Use, _: Span) {
-                self.0.push(path.clone());
-            }
-        }
-        let mut all = HashSet::new();
-        for (number, chart) in self.scopes.charts.iter().enumerate() {
-            let mut paths = Paths(Vec::new());
-            for action in chart.steps().flat_map(|s| &s.actions) {
-                if let ActionKind::Qualified { condition: Some(e), .. }
-                | ActionKind::EachScan { condition: Some(e), .. } = &action.kind
-                {
-                    visit_mut::expr(&mut e.clone(), &mut paths);
-                }
-            }
-            all.extend(paths.0.iter().filter_map(
-                |path| match self.scopes.refer(Some(number), &path.names) {
-                    Some(Ref::Var(key) | Ref::Bit(key, _)) => Some(key),
-                    _ => None,
-                },
-            ));
-        }
-        all
     }
 }
 

@@ -94,7 +94,8 @@ fn an_enumeration_is_a_type_in_a_project() {
     assert!(has(&xml, "<variable name=\"chosen\">\n<simpleValue value=\"Off\"/>"), "{xml}");
 }
 
-/// What is no comparison, assignment, parameter or CASE is of INT, and so are all variables of that enumeration.
+/// All variables of an enumeration are of INT if one of them is used in another way than in a comparison, an assignment, a
+/// parameter or a CASE.
 #[test]
 fn other_uses_leave_numbers() {
     let uses = [

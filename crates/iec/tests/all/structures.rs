@@ -155,7 +155,7 @@ fn a_member_of_all_elements_at_once_takes_an_array_apart() {
 }
 
 #[test]
-fn what_a_structure_of_matiec_cannot_hold_takes_it_apart() {
+fn a_structure_that_matiec_cannot_hold_is_taken_apart() {
     let named = "struct Part { name : STRING[12] number : INT }\nvar p : Part\nconst c : Motor := (speed := 4)\ninput a : BOOL\n";
     let chart = "chart G { initial step 1 { each scan: p.number := p.number + 1 each scan: m.speed := c.speed } 1 -> 1 when a }\n";
     let document = with(&format!("{LINE}{named}{chart}"));

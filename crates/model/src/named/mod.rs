@@ -5,14 +5,14 @@
 //! ```
 //!
 //! [`declared`] changes declarations: a variable of `type Percent : INT(0..100)` becomes an INT with
-//! [`Limits`](crate::Limits). [`held`] changes statements and expressions. It runs after the members of structures have
+//! [`Limits`]. [`held`] changes statements and expressions. It runs after the members of structures have
 //! become variables. It replaces a value of an enumeration by its number, and `p := e` by `p := INT_within_0_100(e)` if
 //! `p` has bounds. All that follows knows whole numbers and functions only.
 //!
 //! # What must hold
 //!
 //! - A document without such types is not copied.
-//! - In the result of [`declared`], [`VarDecl::of`](crate::VarDecl::of) names structures and function blocks only, and each
+//! - In the result of [`declared`], [`VarDecl::of`] names structures and function blocks only, and each
 //!   [`Item::Type`](crate::Item::Type) is an enumeration.
 //! - No variable with bounds ever holds a value outside of them. A value of an enumeration has no operation but `=` and `<>`.
 
@@ -24,3 +24,17 @@ mod walk;
 
 pub use declare::{declared, numbered};
 pub use held::{Checker, held};
+
+use crate::{Expr, Limits, Name, VarDecl};
+
+impl VarDecl {
+    /// See [`Limits::values`].
+    pub fn values(&self) -> &[(Name, Option<Expr>)] {
+        self.limits.as_deref().map_or(&[], Limits::values)
+    }
+
+    /// See [`Limits::range`].
+    pub fn range(&self) -> Option<(i128, i128)> {
+        self.limits.as_deref().and_then(Limits::range)
+    }
+}
