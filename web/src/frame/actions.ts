@@ -61,12 +61,23 @@ export function close(file: OpenFile): void {
   } else void shell.try(() => files.close(file));
 }
 
+/** Adds a chart and shows it, with its first step selected. */
+export async function newChart(file: OpenFile): Promise<void> {
+  const before = new Set(file.look.charts.map((c) => c.name));
+  const edited = await shell.try(() => file.edit({ g: 'add_chart', kind: 'chart' }));
+  const made = file.look.charts.find((c) => !before.has(c.name));
+  if (!edited || !made) return;
+  shell.show(file, made.name);
+  shell.select(edited.select ?? []);
+  shell.keysToDrawing();
+}
+
 export function newFile(): void {
   let n = 1;
   const taken = (name: string) => files.find(name) || shell.folder.some((f) => f.path === name);
   while (taken(`new-${n}.g7`)) n++;
   shell.gallery = false;
-  void shell.try(() => files.open(`new-${n}.g7`, FIRST));
+  void shell.try(() => files.open(`new-${n}.g7`, FIRST)).then(() => shell.keysToDrawing());
 }
 
 /** Opens a file of the user's machine. */

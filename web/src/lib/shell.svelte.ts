@@ -103,6 +103,11 @@ class Shell {
     void tick().then(() => document.querySelectorAll<HTMLElement>('.problems .problem')[n]?.focus());
   }
 
+  /** Gives the drawing the keys, if it is visible. */
+  keysToDrawing(): void {
+    void tick().then(() => document.querySelector<HTMLElement>('#drawing [role=application]')?.focus());
+  }
+
   /** Shows the page on a kind of problem. */
   explain(code: string): void {
     this.explained = code;

@@ -24,7 +24,6 @@ export const panels = {
   'vars.uses': ['used in {n} places', 'employée à {n} endroits', 'usada em {n} sítios'],
   'vars.flags': ['Marks', 'Attributs', 'Atributos'],
   'vars.tools': ['Tools', 'Outils', 'Ferramentas'],
-  'vars.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'vars.all': ['All classes', 'Toutes les classes', 'Todas as classes'],
   'vars.everywhere': ['All charts', 'Tous les grafcets', 'Todos os grafcets'],
   'vars.ofFile': ['Of the file', 'Du fichier', 'Do ficheiro'],

@@ -14,7 +14,6 @@ export const prove = {
   'prove.large': ['This file is large: its questions are asked on the button.', 'Ce fichier est grand : ses questions sont posées par le bouton.', 'Este ficheiro é grande: as perguntas fazem-se com o botão.'],
   'prove.failed': ['The search failed: {why}', 'La recherche a échoué : {why}', 'A procura falhou: {why}'],
   'prove.old': ['The text has changed since.', 'Le texte a changé depuis.', 'O texto mudou entretanto.'],
-  'prove.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'prove.show': ['Show answers', 'Réponses affichées', 'Respostas mostradas'],
   'prove.every': ['All', 'Toutes', 'Todas'],
   'prove.own': ['Own', 'Les miennes', 'Próprias'],

@@ -73,7 +73,6 @@ export const run = {
   'run.variables': ['Variables', 'Variables', 'Variáveis'],
   'run.plantStates': ['Plant', 'Partie opérative', 'Processo'],
   'run.steps': ['Steps', 'Étapes', 'Etapas'],
-  'run.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'run.more': ['{n} more: filter to see them', '{n} de plus : filtrez pour les voir', 'Mais {n}: filtre para os ver'],
   'run.situation': ['Active steps: {steps}', 'Étapes actives : {steps}', 'Etapas ativas: {steps}'],
   'run.nothing': ['Nothing has this name.', "Rien ne s'appelle ainsi.", 'Nada tem este nome.'],

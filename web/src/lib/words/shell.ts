@@ -36,6 +36,7 @@ export const shell = {
   'app.right': ['Right side', 'Côté droit', 'Lado direito'],
   'app.bottom': ['Bottom', 'Bas', 'Fundo'],
   'app.resize': ['Resize', 'Redimensionner', 'Redimensionar'],
+  'app.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'app.openFiles': ['Open files', 'Fichiers ouverts', 'Ficheiros abertos'],
   'app.unsaved': ['not saved', 'non enregistré', 'por guardar'],
   'app.saved': ['{name} is saved.', '{name} est enregistré.', '{name} está guardado.'],

@@ -13,7 +13,6 @@ export const start = {
   'start.examples': ['Examples', 'Exemples', 'Exemplos'],
   'start.folder': ['Folder {name}', 'Dossier {name}', 'Pasta {name}'],
   'start.files': ['Files', 'Fichiers', 'Ficheiros'],
-  'start.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'start.unreadable': ['This file cannot be read.', 'Ce fichier est illisible.', 'Este ficheiro não pode ser lido.'],
   'start.facts': ['{steps} steps', '{steps} étapes', '{steps} etapas'],
   'start.factTests': ['{n} tests', '{n} essais', '{n} testes'],
