@@ -3,7 +3,9 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { box, browser, item, open, playground, press, until, type Box, type Site } from './lib';
+import { Placed } from '../src/run/placed';
+import type { Item } from '../src/lib/protocol';
+import { box, browser, drawn, item, open, playground, press, until, type Box, type Site } from './lib';
 
 const CHART = `input a : BOOL
 output lamp, motor : BOOL
@@ -31,6 +33,18 @@ chart G1 {
 }
 `;
 
+const COUNT = `input a : BOOL
+var count : INT
+chart G1 {
+  initial step 0
+  step 1
+  step 2
+  0 -> 1 when a
+  1 -> 2 when count >= 3
+  2 -> 0 when not a
+}
+`;
+
 const WRONG = CHART.replace('  step 2\n', '  step 2 { N missing }\n');
 
 const LONG = `chart G1 {
@@ -44,7 +58,7 @@ let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'chart.g7': CHART, 'fleeting.g7': FLEETING, 'wrong.g7': WRONG, 'long.g7': LONG });
+  site = await playground({ 'chart.g7': CHART, 'fleeting.g7': FLEETING, 'count.g7': COUNT, 'wrong.g7': WRONG, 'long.g7': LONG });
   b = await browser();
 });
 
@@ -227,4 +241,41 @@ test('the chronogram is zoomed by keys and by two fingers', async () => {
   await until(async () => Math.abs((await wide()) - before / 2) < before * 0.1, `half of ${before} s are in sight`);
   assert.equal(await page.locator('.cursors b').count(), 0);
   await context.close();
+});
+
+/** A transition of a drawing, as far as it is looked at. */
+const transition = (number: number, from: string, to: string, source: string, label?: string): Item =>
+  ({ id: `G1/t/${number}`, part: 'transition', steps: [[from], [to]], source, ...(label === undefined ? {} : { label }) }) as unknown as Item;
+
+test('marks of transitions follow their steps and receptivities while the text is another one', () => {
+  const placed = new Placed();
+  const was = [transition(0, '0', '1', 'a'), transition(1, '1', '2', 'b'), transition(2, '1', '2', 'c'), transition(3, '2', '0', 'd'), transition(4, '2', '3', 'e', 'last')];
+  placed.show('G1', was, true);
+  const all = () => was.map(({ id }) => placed.of(id));
+  assert.deepEqual(all(), was.map(({ id }) => id));
+  // The first one is gone, one has another receptivity, and one with a label has other steps.
+  placed.show('G1', [transition(0, '1', '2', 'c'), transition(1, '1', '2', 'b'), transition(2, '2', '0', 'not d'), transition(3, '5', '3', 'e', 'last')], false);
+  assert.deepEqual(all(), [null, 'G1/t/1', 'G1/t/0', 'G1/t/2', 'G1/t/3']);
+  // Two between the same steps have both changed: it is not known which is which.
+  placed.show('G1', [transition(0, '1', '2', 'x'), transition(1, '1', '2', 'y')], false);
+  assert.deepEqual(all(), [null, null, null, null, null]);
+  placed.show('G1', was, true);
+  assert.deepEqual(all(), was.map(({ id }) => id));
+  // A chart that was never drawn while text and run agreed has no marks that could be wrong.
+  placed.show('G2', [], false);
+  assert.deepEqual([placed.of('G2/t/0'), placed.of('G3/t/0')], [null, 'G3/t/0']);
+});
+
+test('an enabled transition is that of the active step, also when a step before it is deleted', async () => {
+  const page = await open(b, site, 'count.g7');
+  await oneScan(page);
+  const mark = page.locator('.live .enabled');
+  await until(async () => !!(await mark.getAttribute('d')), 'the first transition is enabled');
+  await press(page, 'G1/s/0');
+  await page.keyboard.press('Delete');
+  await drawn(page);
+  await page.getByRole('button', { name: 'Go on with the earlier chart' }).click();
+  await item(page, 'G1/s/1').waitFor();
+  await until(async () => !(await mark.getAttribute('d')) && !(await page.locator('.live .holds').getAttribute('d')), 'no transition behind an inactive step is enabled');
+  await end(page);
 });

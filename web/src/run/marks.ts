@@ -1,8 +1,9 @@
 // The marks of a run on the drawing, updated at most 25 times a second.
 import { live } from '../lib/live.svelte';
 import type { Item } from '../lib/protocol';
-import { transitionNumber } from '../lib/ids';
+import { kindOf, transitionNumber } from '../lib/ids';
 import { choices, isShown, shownOf, type Chosen } from '../lib/instances.svelte';
+import { Placed } from './placed';
 import type { Run } from './state.svelte';
 
 const GAP = 40;
@@ -66,9 +67,27 @@ export function age(ms: number, grain = 0): string {
   return `${Math.floor(minutes / 60)}h${minutes % 60}m`;
 }
 
+/** The visible symbols. */
+interface Shown {
+  chart: string;
+  items: readonly Item[];
+  names: Named;
+  same: boolean;
+}
+
+/** A run stays while others are looked at. */
+const places = new WeakMap<Run, Placed>();
+
+function placedOf(run: Run): Placed {
+  const placed = places.get(run) ?? new Placed();
+  places.set(run, placed);
+  return placed;
+}
+
 export class Marks {
   readonly #run: Run;
   readonly #chosen: Chosen = (chart) => choices.of(this.#run.file, chart, this.#run.instances);
+  readonly #placed: Placed;
   #names: Named = new Map();
   /** For each step its actions that name signals. */
   #actions = new Map<string, string[]>();
@@ -83,13 +102,15 @@ export class Marks {
 
   constructor(run: Run) {
     this.#run = run;
+    this.#placed = placedOf(run);
     this.#unwatch = run.watch(() => this.soon());
     live.running = true;
     this.tell();
   }
 
-  /** Sets the signals that the visible symbols name. */
-  show(names: Named, other: Run | null): void {
+  /** Sets the visible symbols with the signals that they name; `same` says that their text is that of the run. */
+  show({ chart, items, names, same }: Shown, other: Run | null): void {
+    this.#placed.show(chart, items, same);
     this.#names = names;
     this.#actions = new Map();
     for (const id of names.keys()) {
@@ -143,11 +164,16 @@ export class Marks {
       const ms = run.times.get(i);
       if (ms !== undefined) times.set(id, age(ms, grain));
     }
-    const enabled = new Map(shownOf(transitions, run.enabled, this.#chosen));
+    const enabled = new Map<string, 0 | 1 | 2>();
+    for (const [was, state] of shownOf(transitions, run.enabled, this.#chosen)) {
+      const id = this.#placed.of(was);
+      if (id !== null) enabled.set(id, state);
+    }
     live.on = on;
     live.times = times;
     live.enabled = enabled;
-    live.stopped = run.halt?.ids?.[0] ?? run.stopped;
+    const stopped = run.halt?.ids?.[0] ?? run.stopped;
+    live.stopped = stopped && kindOf(stopped) === 't' ? this.#placed.of(stopped) : stopped;
     this.#flash();
     this.#beside(on, enabled);
   }
@@ -157,7 +183,8 @@ export class Marks {
     const now = performance.now();
     for (const i of this.#run.cleared) {
       const transition = this.#run.started.transitions[i];
-      if (isShown(transition, this.#chosen)) this.#flashes.set(transition.id, now + (this.#flashes.size < MANY ? FLASH : BRIEF));
+      const id = isShown(transition, this.#chosen) ? this.#placed.of(transition.id) : null;
+      if (id !== null) this.#flashes.set(id, now + (this.#flashes.size < MANY ? FLASH : BRIEF));
     }
     this.#run.cleared.clear();
     for (const [id, until] of this.#flashes) if (until < now) this.#flashes.delete(id);
