@@ -1,9 +1,9 @@
 //! Enumerations of the file, which stay types of `TYPE … END_TYPE` with names for their values.
 //!
 //! Up to here a variable of an enumeration is an INT with [`Limits::Of`], and numbers stand in the places of values. An
-//! enumeration stays if its numbers are 0, 1, 2 …, which compilers give the values as well, and if all its variables are only compared for equality, assigned, given to parameters of the same type
-//! and chosen from by CASE, each time beside a value or a variable of the same type (IEC 61131-3:2003, 2.3.3.1). Otherwise
-//! its variables stay INT, and its values numbers.
+//! enumeration stays if its numbers are 0, 1, 2 …, which compilers give the values as well, and if all its variables are only
+//! compared for equality, assigned, given to parameters of the same type and chosen from by CASE, each time beside a value
+//! or a variable of the same type (IEC 61131-3:2003, 2.3.3.1). Otherwise its variables stay INT, and its values numbers.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
@@ -125,7 +125,8 @@ impl Enumerations {
 
 /// True for an array whose initial values are all the first one, as they are without being written.
 fn firsts(decl: &VarDecl) -> bool {
-    matches!(decl.init.as_ref().map(|e| &e.kind), Some(ExprKind::List(all)) if all.iter().all(|(_, e)| e.kind.whole() == Some(0)))
+    let Some(ExprKind::List(all)) = decl.init.as_ref().map(|e| &e.kind) else { return false };
+    all.iter().all(|(_, e)| e.kind.whole() == Some(0))
 }
 
 impl Enumeration {
@@ -165,9 +166,8 @@ fn counts(document: &Document) -> BTreeMap<Box<str>, i128> {
 }
 
 /// Where a name is declared: in the file, in a chart, or in a function block.
-#[derive(Clone, Debug, Default, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 enum Home {
-    #[default]
     File,
     Chart(Box<str>),
     Block(Box<str>),
@@ -286,8 +286,9 @@ struct Looking<'a> {
     counts: BTreeMap<Box<str>, i128>,
     made: Option<&'a Enumerations>,
     home: Home,
-    /// How often variables of each enumeration are named, and how often where names of values can stand.
+    /// How often variables of each enumeration are named.
     named: BTreeMap<Box<str>, usize>,
+    /// How often of these in a place where the name of a value can stand.
     right: BTreeMap<Box<str>, usize>,
     /// The enumerations with a value that has no name.
     nameless: BTreeSet<Box<str>>,
