@@ -27,7 +27,7 @@ type Write = fn(&Document) -> Written;
 enum Keeps {
     /// None of them.
     None,
-    /// Arrays and function blocks; if `initial`, instances of these with initial values as well.
+    /// Arrays, structures, enumerations and function blocks; if `initial`, instances of these with initial values as well.
     Blocks { initial: bool },
 }
 
@@ -193,8 +193,8 @@ impl Format {
     }
 }
 
-/// Gives a document to a writer as charts and variables: without parameters and structures, and without the arrays and
-/// function blocks that its format does not have.
+/// Gives a document to a writer as charts and variables: without parameters of charts, and without the arrays, structures
+/// and function blocks that its format does not have.
 fn with_plain(document: &Document, keeps: Keeps, write: impl FnOnce(&Document) -> Written) -> Written {
     let typed = declared(document).0;
     let charts = instantiated(&typed).0;
