@@ -1,4 +1,4 @@
-// The server is there again: what waited for it is saved, and what has changed meanwhile is taken over.
+// Runs when the server is back: saves the texts that waited for it, and takes over the files that have changed on the disk.
 import { drafts } from '../lib/drafts.svelte';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';

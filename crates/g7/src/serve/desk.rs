@@ -26,7 +26,7 @@ const TICK: Nanos = Nanos::from_millis(40);
 const QUIET: u32 = 5;
 /// Longest time of the scans of one advance: the rest of the tick is for orders.
 const SCANS: Nanos = Nanos::from_millis(20);
-/// The same of an order that makes scans: other orders wait for it.
+/// Longest time of the scans of one order, such as "advance by an hour". Other orders wait until it has ended.
 const ASKED: Nanos = Nanos::from_millis(2_000);
 /// Greatest length of an answer, in bytes.
 const LARGEST: usize = 16 << 20;

@@ -41,8 +41,8 @@ pub(super) fn make(folder: &Path) -> io::Result<()> {
     builder.create(folder)
 }
 
-/// True if only its owner may read or change a folder, and it is no link to another one. Where the system has no such
-/// modes, the user's own place has its rights.
+/// True if a folder is no link, and if only its owner may read and change it. On a system without such modes any folder
+/// counts: the rights of the user's own place protect it.
 pub(super) fn is_private(folder: &Path) -> bool {
     let Ok(meta) = fs::symlink_metadata(folder) else { return false };
     #[cfg(unix)]

@@ -77,7 +77,7 @@ impl<'d> Types<'d> {
         self.names.insert(name, named);
     }
 
-    /// The structure or function block of a variable, or of the elements of an array.
+    /// The type of a variable, if that is a structure or a function block; for an array, the type of its elements.
     fn type_of(&self, decl: &VarDecl) -> Option<&'d Composed> {
         let of = decl.of.as_ref()?;
         let of = match self.arrays.get(&*of.text) {

@@ -455,7 +455,7 @@ fn alike(left: Text, right: Text, op: BinaryOp) -> (Text, Text, Ty) {
     }
 }
 
-/// The type of the parameter of a function of the file that an argument is for.
+/// The type of the parameter that gets this argument, in a call of a function of the file.
 fn parameter(function: &Function, place: usize, arg: &Arg) -> Option<Type> {
     let found = match &arg.name {
         Some(name) => function.params.iter().find(|p| p.name.text.eq_ignore_ascii_case(&name.text)),

@@ -25,7 +25,7 @@ pub(super) struct Enumerations {
     types: BTreeMap<Box<str>, Enumeration>,
 }
 
-/// An enumeration with its new names.
+/// The names that an enumeration and its values have in the written file.
 struct Enumeration {
     name: Name,
     /// In the order of their numbers 0, 1, 2 …
@@ -33,7 +33,8 @@ struct Enumeration {
 }
 
 impl Enumerations {
-    /// Finds the enumerations of a document that stay in what was made of it, and puts their types and values into that.
+    /// Finds the enumerations of `document` that can stay, and puts their types and the names of their values into `out`, the
+    /// rewritten document.
     pub(super) fn of(
         document: &Document,
         form: Form,
@@ -99,7 +100,7 @@ impl Enumerations {
         }
     }
 
-    /// The new name of the enumeration of a declaration, which gives these values their names.
+    /// The new name of the enumeration of a member. The initial values of the member become names of values.
     pub(super) fn of_member(&self, decl: &VarDecl, values: &mut [Expr]) -> Option<Name> {
         let of = self.get(decl.limits.as_deref())?;
         if !firsts(decl) {
@@ -108,7 +109,7 @@ impl Enumerations {
         Some(of.name.clone())
     }
 
-    /// Gives a declaration the type and the names of values.
+    /// Puts the new name of its enumeration into a declaration, and the names of values into its initial value.
     fn declare(&self, decl: &mut VarDecl) {
         let Some(of) = self.get(decl.limits.as_deref()) else { return };
         decl.of = Some(Box::new(of.name.clone()));
@@ -123,7 +124,7 @@ impl Enumerations {
     }
 }
 
-/// True for an array whose initial values are all the first one, as they are without being written.
+/// True for an array whose elements all begin with the first value of the enumeration. This needs no initial values.
 fn firsts(decl: &VarDecl) -> bool {
     let Some(ExprKind::List(all)) = decl.init.as_ref().map(|e| &e.kind) else { return false };
     all.iter().all(|(_, e)| e.kind.whole() == Some(0))
@@ -278,7 +279,7 @@ fn declared(decl: &VarDecl) -> Declared {
     Declared { of, block: decl.of.as_ref().map(|of| of.text.clone()) }
 }
 
-/// Looks at all uses of variables of enumerations; with `made`, puts names in the places of numbers.
+/// Counts all uses of variables of enumerations. With `made`, it replaces the numbers beside them by the names of values.
 struct Looking<'a> {
     variables: &'a Variables,
     form: Form,
@@ -286,9 +287,9 @@ struct Looking<'a> {
     counts: BTreeMap<Box<str>, i128>,
     made: Option<&'a Enumerations>,
     home: Home,
-    /// How often variables of each enumeration are named.
+    /// The number of uses of the variables of each enumeration.
     named: BTreeMap<Box<str>, usize>,
-    /// How often of these in a place where the name of a value can stand.
+    /// The number of those uses in a place where the name of a value can stand.
     right: BTreeMap<Box<str>, usize>,
     /// The enumerations with a value that has no name.
     nameless: BTreeSet<Box<str>>,

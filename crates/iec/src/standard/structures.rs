@@ -123,8 +123,8 @@ impl<'d> Structures<'d> {
         }
     }
 
-    /// Puts one declaration in the place of those of the members of a variable, and the types before all others. Here the
-    /// names of members have a point.
+    /// Replaces the declarations of the members of a variable by one declaration, and puts the structures before all other
+    /// items. At this time the name of a member that stays has a point.
     pub(super) fn joined(&self, document: &mut Document) {
         let mut used = BTreeSet::new();
         self.join(
@@ -212,8 +212,8 @@ impl<'d> Structures<'d> {
         })
     }
 
-    /// The initial value of one of so many structures that stand behind these names, with the members whose values are not
-    /// those of the type, or with `all`. None if it has no members then.
+    /// The initial value of one structure; `behind` are the names that lead to it. It names the members whose values are not
+    /// those of the type, or all members if `one.all`. None if it would name no member.
     fn value(&self, of: &str, behind: &str, one: One, given: &Given<'_>, at: Place) -> Option<Expr> {
         let mut fields = Vec::new();
         for m in &self.get(of)?.members {
@@ -270,7 +270,7 @@ impl Member<'_> {
     }
 }
 
-/// One of several structures of the same kind, all of which stand behind the same names.
+/// One element among the structures to which the same names lead.
 #[derive(Clone, Copy)]
 struct One {
     n: usize,
@@ -279,7 +279,7 @@ struct One {
 }
 
 impl One {
-    /// The values of so many structures within this one: none if none has a value, otherwise one for each.
+    /// The values of the `each` structures within this one: nothing if none of them has a value, otherwise a value for each.
     fn within(self, each: usize, value: impl Fn(One) -> Option<Expr>) -> Vec<Expr> {
         let number = |k| One { n: self.n * each + k, all: self.all };
         let values: Vec<Option<Expr>> = (0..each).map(|k| value(number(k))).collect();
@@ -327,7 +327,7 @@ pub(super) struct Whole<'d> {
 }
 
 impl<'d> Whole<'d> {
-    /// The variables of a document with a structure that can stay. Those of which a member is `apart` cannot.
+    /// Finds the variables with a structure that can stay one variable. A variable cannot if one of its members is in `apart`.
     pub(super) fn of(
         document: &'d Document,
         scopes: &Scopes<'d>,
@@ -352,7 +352,7 @@ impl<'d> Whole<'d> {
         whole
     }
 
-    /// Takes the variables all of whose members are meant as soon as one is.
+    /// If the set has one member of a variable that stays, this adds all other members of that variable.
     pub(super) fn all_or_none(&self, keys: &mut HashSet<VarKey<'d>>) {
         let roots: HashSet<VarKey> =
             keys.iter().filter(|k| self.members.contains_key(*k)).map(|k| root(*k)).collect();

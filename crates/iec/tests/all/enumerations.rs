@@ -94,8 +94,8 @@ fn an_enumeration_is_a_type_in_a_project() {
     assert!(has(&xml, "<variable name=\"chosen\">\n<simpleValue value=\"Off\"/>"), "{xml}");
 }
 
-/// All variables of an enumeration are of INT if one of them is used in another way than in a comparison, an assignment, a
-/// parameter or a CASE.
+/// A variable of an enumeration may stand in a comparison, an assignment, a parameter or a CASE. If one stands anywhere else,
+/// all variables of that enumeration are INT.
 #[test]
 fn other_uses_leave_numbers() {
     let uses = [
@@ -127,7 +127,7 @@ fn initial_values_of_an_array_stay_for_codesys_alone() {
     assert!(has(&xml, values), "{xml}");
 }
 
-/// A PLC numbers the values 0, 1, 2 …
+/// A PLC gives the values the numbers 0, 1, 2 …, so the values of an enumeration with other numbers are written as numbers.
 #[test]
 fn other_numbers_stay_numbers() {
     let text = MODE.replace("Automatic)", "Automatic := 5)");

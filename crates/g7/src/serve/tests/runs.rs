@@ -118,7 +118,7 @@ async fn a_run_that_is_too_heavy_for_its_speed_answers_between_its_scans() {
     let start = json!({ "do": "run_start", "run": "a", "file": "chart.g7", "text": text });
     let one = page.call(start).await;
     let begun = std::time::Instant::now();
-    // After a tick 4000 scans are due, which take minutes; those of 20 ms are made.
+    // After one tick 4000 scans are due. All of them would take minutes; the server stops after 20 ms.
     page.call(json!({ "do": "pace", "run": "a", "speed": 1000 })).await;
     page.hear_of("frame").await;
     page.call(json!({ "do": "pace", "run": "a", "speed": 0 })).await;
