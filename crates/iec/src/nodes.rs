@@ -33,9 +33,7 @@ impl Taken {
                 Item::Var(v) => v.names.iter().for_each(&mut take),
                 Item::Function(f) => take(&f.name),
                 Item::Composed(c) => take(&c.name),
-                Item::Type(t) => {
-                    t.names.iter().chain(t.values().iter().map(|(value, _)| value)).for_each(&mut take)
-                }
+                Item::Type(t) => t.type_names().for_each(&mut take),
                 Item::Chart(c) => {
                     take(&c.name);
                     for item in &c.items {

@@ -106,9 +106,7 @@ impl<'d> Known<'d> {
         for item in &document.items {
             match item {
                 Item::Type(t) => {
-                    known
-                        .values
-                        .extend(t.names.iter().chain(t.values().iter().map(|(n, _)| n)).map(|n| &*n.text));
+                    known.values.extend(t.type_names().map(|n| &*n.text));
                     let numbered = numbered(t.values()).into_iter();
                     known.numbers.extend(
                         numbered.filter_map(|(value, n)| Some(((&*t.names.first()?.text, &*value.text), n?))),
@@ -172,7 +170,7 @@ struct Constants<'k, 'd> {
     known: &'k Known<'d>,
 }
 
-/// Puts numbers in the places of the values of an enumeration, in the declaration of a variable of that.
+/// Replaces the values of an enumeration by their numbers in the initial value of one of its variables.
 struct Values<'k, 'd> {
     known: &'k Known<'d>,
     of: Option<&'k str>,
@@ -189,7 +187,9 @@ impl Visitor for Values<'_, '_> {
 }
 
 impl Constants<'_, '_> {
-    fn bounds(&mut self, v: &mut VarDecl) {
+    /// The same in the initial value and the bounds of a declaration.
+    fn declaration(&mut self, v: &mut VarDecl) {
+        v.init.iter_mut().for_each(|e| visit_mut::expr(e, self));
         for (least, most) in v.array.iter_mut().flat_map(|a| &mut a.dimensions) {
             visit_mut::expr(least, self);
             visit_mut::expr(most, self);
@@ -239,6 +239,7 @@ fn staying(document: &Document, kept: &Kept) -> Result<(Document, Vec<Problem>),
     Ok((Document { items, notes: main.document.notes }, units.told))
 }
 
+/// True for a literal, and for a list of such.
 fn all_written(e: &Expr) -> bool {
     match &e.kind {
         ExprKind::List(values) => values.iter().all(|(_, e)| is_written(e)),
@@ -333,9 +334,8 @@ impl<'d> Units<'d> {
             let of = if let Some(Limits::Of(of)) = v.limits.as_deref() { Some(&*of.text) } else { None };
             let mut named = Values { known: &self.known, of };
             v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut named));
-            v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut constants));
+            constants.declaration(v);
             v.init = v.init.take().filter(all_written);
-            constants.bounds(v);
         }
         made.push(own);
     }
@@ -345,8 +345,7 @@ impl<'d> Units<'d> {
         let mut constants = Constants { own: own_names(of), known: &self.known };
         let mut own = of.clone();
         for v in own.members.iter_mut().chain(&mut own.inouts) {
-            v.init.iter_mut().for_each(|e| visit_mut::expr(e, &mut constants));
-            constants.bounds(v);
+            constants.declaration(v);
         }
         if let Some(body) = &mut own.body {
             // The constants stand in the statements, whatever language shows these.

@@ -33,6 +33,11 @@ impl VarDecl {
         self.limits.as_deref().map_or(&[], Limits::values)
     }
 
+    /// The names that a `type` declares: its own, and those of the values of an enumeration.
+    pub fn type_names(&self) -> impl Iterator<Item = &Name> {
+        self.names.iter().chain(self.values().iter().map(|(value, _)| value))
+    }
+
     /// See [`Limits::range`].
     pub fn range(&self) -> Option<(i128, i128)> {
         self.limits.as_deref().and_then(Limits::range)

@@ -174,9 +174,7 @@ impl<'w> Project<'w> {
                 Item::Var(v) => v.names.iter().for_each(&mut take),
                 Item::Function(f) => take(&f.name),
                 Item::Composed(c) => take(&c.name),
-                Item::Type(t) => {
-                    t.names.iter().chain(t.values().iter().map(|(value, _)| value)).for_each(&mut take)
-                }
+                Item::Type(t) => t.type_names().for_each(&mut take),
                 Item::Chart(c) => {
                     c.vars().flat_map(|v| &v.names).for_each(&mut take);
                     c.steps().for_each(|s| take(&s.name));
@@ -227,7 +225,7 @@ impl<'w> Project<'w> {
                 Item::Function(f) => named(&f.name),
                 Item::Composed(c) => named(&c.name),
                 Item::Chart(c) => named(&c.name),
-                Item::Type(t) => t.names.iter().chain(t.values().iter().map(|(value, _)| value)).any(named),
+                Item::Type(t) => t.type_names().any(named),
                 _ => false,
             })
         };
