@@ -258,7 +258,7 @@ impl Writer<'_> {
         let mut parts = Vec::new();
         for (place, (arg, text)) in args.iter().zip(texts).enumerate() {
             let text = match (own.and_then(|f| parameter(f, place, arg)), common) {
-                (Some(ty), _) => self.value(&arg.value, ty),
+                (Some(ty), _) => text.converted(ty).text,
                 (None, Ty::Known(t)) if alike && counts(t) => text.converted(t).text,
                 _ => text.text,
             };
