@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { Placed } from '../src/run/placed';
+import { Transitions } from '../src/run/transitions';
 import type { Item } from '../src/lib/protocol';
 import { box, browser, drawn, item, open, playground, press, until, type Box, type Site } from './lib';
 
@@ -248,22 +248,22 @@ const transition = (number: number, from: string, to: string, source: string, la
   ({ id: `G1/t/${number}`, part: 'transition', steps: [[from], [to]], source, ...(label === undefined ? {} : { label }) }) as unknown as Item;
 
 test('marks of transitions follow their steps and receptivities while the text is another one', () => {
-  const placed = new Placed();
+  const found = new Transitions();
   const was = [transition(0, '0', '1', 'a'), transition(1, '1', '2', 'b'), transition(2, '1', '2', 'c'), transition(3, '2', '0', 'd'), transition(4, '2', '3', 'e', 'last')];
-  placed.show('G1', was, true);
-  const all = () => was.map(({ id }) => placed.of(id));
+  found.show('G1', was, true);
+  const all = () => was.map(({ id }) => found.of(id));
   assert.deepEqual(all(), was.map(({ id }) => id));
   // The first one is gone, one has another receptivity, and one with a label has other steps.
-  placed.show('G1', [transition(0, '1', '2', 'c'), transition(1, '1', '2', 'b'), transition(2, '2', '0', 'not d'), transition(3, '5', '3', 'e', 'last')], false);
+  found.show('G1', [transition(0, '1', '2', 'c'), transition(1, '1', '2', 'b'), transition(2, '2', '0', 'not d'), transition(3, '5', '3', 'e', 'last')], false);
   assert.deepEqual(all(), [null, 'G1/t/1', 'G1/t/0', 'G1/t/2', 'G1/t/3']);
   // Two between the same steps have both changed: it is not known which is which.
-  placed.show('G1', [transition(0, '1', '2', 'x'), transition(1, '1', '2', 'y')], false);
+  found.show('G1', [transition(0, '1', '2', 'x'), transition(1, '1', '2', 'y')], false);
   assert.deepEqual(all(), [null, null, null, null, null]);
-  placed.show('G1', was, true);
+  found.show('G1', was, true);
   assert.deepEqual(all(), was.map(({ id }) => id));
   // A chart that was never drawn while text and run agreed has no marks that could be wrong.
-  placed.show('G2', [], false);
-  assert.deepEqual([placed.of('G2/t/0'), placed.of('G3/t/0')], [null, 'G3/t/0']);
+  found.show('G2', [], false);
+  assert.deepEqual([found.of('G2/t/0'), found.of('G3/t/0')], [null, 'G3/t/0']);
 });
 
 test('an enabled transition is that of the active step, also when a step before it is deleted', async () => {

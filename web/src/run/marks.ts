@@ -3,8 +3,8 @@ import { live } from '../lib/live.svelte';
 import type { Item } from '../lib/protocol';
 import { kindOf, transitionNumber } from '../lib/ids';
 import { choices, isShown, shownOf, type Chosen } from '../lib/instances.svelte';
-import { Placed } from './placed';
 import type { Run } from './state.svelte';
+import { Transitions } from './transitions';
 
 const GAP = 40;
 /** A frame that comes less than this before the next update is shown at once, in ms; this saves one
@@ -75,19 +75,19 @@ interface Shown {
   same: boolean;
 }
 
-/** A run stays while others are looked at. */
-const places = new WeakMap<Run, Placed>();
+/** What is known of each run outlives its marks, which end when another run is looked at. */
+const kept = new WeakMap<Run, Transitions>();
 
-function placedOf(run: Run): Placed {
-  const placed = places.get(run) ?? new Placed();
-  places.set(run, placed);
-  return placed;
+function transitionsOf(run: Run): Transitions {
+  const found = kept.get(run) ?? new Transitions();
+  kept.set(run, found);
+  return found;
 }
 
 export class Marks {
   readonly #run: Run;
   readonly #chosen: Chosen = (chart) => choices.of(this.#run.file, chart, this.#run.instances);
-  readonly #placed: Placed;
+  readonly #transitions: Transitions;
   #names: Named = new Map();
   /** For each step its actions that name signals. */
   #actions = new Map<string, string[]>();
@@ -102,7 +102,7 @@ export class Marks {
 
   constructor(run: Run) {
     this.#run = run;
-    this.#placed = placedOf(run);
+    this.#transitions = transitionsOf(run);
     this.#unwatch = run.watch(() => this.soon());
     live.running = true;
     this.tell();
@@ -110,7 +110,7 @@ export class Marks {
 
   /** Sets the visible symbols with the signals that they name; `same` says that their text is that of the run. */
   show({ chart, items, names, same }: Shown, other: Run | null): void {
-    this.#placed.show(chart, items, same);
+    this.#transitions.show(chart, items, same);
     this.#names = names;
     this.#actions = new Map();
     for (const id of names.keys()) {
@@ -166,14 +166,14 @@ export class Marks {
     }
     const enabled = new Map<string, 0 | 1 | 2>();
     for (const [was, state] of shownOf(transitions, run.enabled, this.#chosen)) {
-      const id = this.#placed.of(was);
+      const id = this.#transitions.of(was);
       if (id !== null) enabled.set(id, state);
     }
     live.on = on;
     live.times = times;
     live.enabled = enabled;
     const stopped = run.halt?.ids?.[0] ?? run.stopped;
-    live.stopped = stopped && kindOf(stopped) === 't' ? this.#placed.of(stopped) : stopped;
+    live.stopped = stopped && kindOf(stopped) === 't' ? this.#transitions.of(stopped) : stopped;
     this.#flash();
     this.#beside(on, enabled);
   }
@@ -183,7 +183,7 @@ export class Marks {
     const now = performance.now();
     for (const i of this.#run.cleared) {
       const transition = this.#run.started.transitions[i];
-      const id = isShown(transition, this.#chosen) ? this.#placed.of(transition.id) : null;
+      const id = isShown(transition, this.#chosen) ? this.#transitions.of(transition.id) : null;
       if (id !== null) this.#flashes.set(id, now + (this.#flashes.size < MANY ? FLASH : BRIEF));
     }
     this.#run.cleared.clear();

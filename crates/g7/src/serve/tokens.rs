@@ -31,9 +31,9 @@ use super::refusal::Refusal;
 use super::state;
 use crate::failure::{Failure, raw};
 
-/// Most tokens that are known; those used last stay.
+/// The most tokens that are kept. If there are more, those that were used longest ago are dropped.
 const MOST: usize = 16;
-/// A use is written so often, in ms.
+/// The time after which a new use of a token is written to the file, in ms.
 const NOTED: u64 = 60_000;
 /// The length of the number that a page sends, in hexadecimal digits.
 const NUMBER: usize = 32;
@@ -42,21 +42,21 @@ const NUMBER: usize = 32;
 #[derive(Clone, Debug, Deserialize, Serialize)]
 struct Row {
     hash: String,
-    /// The time of its start, and of its last use or 0, in ms since 1970.
+    /// When the server with this token was started, and when the token was last used (0: never), in ms since 1970.
     made: u64,
     used: u64,
-    /// The time of use that the file has.
+    /// The time of the last use as the file has it.
     #[serde(skip)]
     noted: u64,
-    /// It is that of this start, which lets in as long as this runs.
+    /// True for the token of this start. It counts as long as this server runs.
     #[serde(skip)]
     own: bool,
 }
 
-/// The file of a folder and an address.
+/// The contents of a file of tokens: those of one folder, served at one address.
 #[derive(Deserialize, Serialize)]
 struct Kept {
-    /// The folder once more: two could have the same name.
+    /// The whole path of the folder. It is compared, because two folders could have the same name for their files.
     folder: String,
     at: SocketAddr,
     tokens: Vec<Row>,
@@ -79,7 +79,7 @@ impl Shelf {
         self.folder.join(format!("{}.json", at.to_string().replace([':', '[', ']'], "-")))
     }
 
-    /// The tokens of a file that still count.
+    /// The tokens of a file that still let in.
     fn read(&self, place: &Path) -> Option<Kept> {
         if !state::is_private(&self.folder) {
             return None;
@@ -98,7 +98,7 @@ impl Shelf {
         kept.filter_map(|kept| Some((used(&kept)?, kept.at.port()))).max().map(|(_, port)| port)
     }
 
-    /// Deletes what lets nobody in any more, or all.
+    /// Deletes the files whose tokens all have ended; with `all`, every file.
     fn sweep(&self, all: bool) {
         if !state::is_private(&self.folder) {
             return;
@@ -154,7 +154,7 @@ impl Tokens {
         self.rows.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// True if a token lets in; it counts as used.
+    /// True if a token lets in. This counts as a use.
     pub(super) fn admits(&self, given: &str) -> bool {
         let (now, given) = (utc_millis(), hash(given));
         let mut rows = self.rows();
@@ -165,14 +165,14 @@ impl Tokens {
         })
     }
 
-    /// For each token that lets in, what only someone can say who knows its hash.
+    /// A proof for each token that lets in: only who knows the hash of the token can make it.
     fn proofs(&self, at: SocketAddr, number: &str) -> Vec<String> {
         let now = utc_millis();
         let rows = self.rows();
         rows.iter().filter(|row| row.lasts(now)).map(|row| proof(&row.hash, at.port(), number)).collect()
     }
 
-    /// Writes what was used. For a thread that may wait, some times a second.
+    /// Writes the new uses to the file. It waits for the disk, so it must not run on a thread that answers requests.
     pub(super) fn look(&self) {
         let Some((shelf, at)) = &self.file else { return };
         let mut rows = self.rows();
@@ -198,12 +198,12 @@ fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|b| format!("{b:02x}")).collect()
 }
 
-/// Two hashes that differ tell nothing of their tokens, so they are compared in any time.
+/// Tokens are compared by their hashes: how long the comparison takes tells nothing about a token.
 fn hash(token: &str) -> String {
     hex(&Sha256::digest(token.as_bytes()))
 }
 
-/// The port is a part of it: a stranger at the port of before cannot pass a proof on from where the server is now.
+/// The proof contains the port. If the server has moved, a stranger at the old port cannot use a proof made at the new one.
 fn proof(hash: &str, port: u16, number: &str) -> String {
     hex(&Sha256::digest(format!("{hash}:{port}:{number}").as_bytes()))
 }
@@ -215,7 +215,7 @@ fn token() -> Result<String, Failure> {
     Ok(hex(&bytes))
 }
 
-/// The question of a page before it shows its token to whoever answers where its server was.
+/// A page asks this before it shows its token, since somebody else may answer at the address of its server.
 pub(super) fn routes(tokens: Arc<Tokens>, bound: SocketAddr) -> Router {
     Router::new().route("/api/again", get(again)).with_state((tokens, bound))
 }

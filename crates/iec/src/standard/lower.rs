@@ -177,11 +177,13 @@ impl<'d> Lower<'d> {
         lower.driven_by = lower.drives();
         lower.uses = lower.used();
         lower.moved = lower.moving();
-        // A copy of a member of all elements is no array of structures.
-        let copied = lower.copied_in_conditions().into_iter().filter(|key| key.1.contains(']'));
-        let apart = lower.driven_by.keys().copied().chain(copied);
-        lower.whole = Whole::of(document, &lower.scopes, structures, apart);
-        lower.whole.all_or_none(&mut lower.shared);
+        if !structures.is_empty() {
+            // A copy of a member of all elements is no array of structures.
+            let copied = lower.copied_in_conditions().into_iter().filter(|key| key.1.contains(']'));
+            let apart = lower.driven_by.keys().copied().chain(copied);
+            lower.whole = Whole::of(document, &lower.scopes, structures, apart);
+            lower.whole.all_or_none(&mut lower.shared);
+        }
         lower.name();
         lower
     }

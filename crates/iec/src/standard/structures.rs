@@ -87,6 +87,11 @@ impl<'d> Structures<'d> {
         renamed(&self.changed)
     }
 
+    /// True if the document has no structures.
+    pub(super) fn is_empty(&self) -> bool {
+        self.types.is_empty()
+    }
+
     fn get(&self, name: &str) -> Option<&Structure<'d>> {
         self.types.get(name)
     }
