@@ -152,10 +152,10 @@ test('a page that is loaded again has its work, and what was to be saved is save
   await notice(page, 'loop.g7 will be saved').waitFor();
   await type(page, '// later\n');
   await page.waitForFunction(() => Object.values(localStorage).some((text) => text.includes('// later')));
-  // Nobody answers: the browser shows a page of its own.
+  // Nobody answers: the browser shows a page of its own. While that comes up, it refuses to be loaded again.
   await page.reload().catch(() => undefined);
   await restart();
-  await page.reload();
+  await until(() => page.reload().then(() => true, () => false), 'the page is not loaded');
   await until(() => Promise.resolve(disk() === `// kept\n${TEXT}`), 'it is not saved');
   await page.locator('.cm-content').getByText('// later').waitFor();
   await dirty(page).waitFor();
