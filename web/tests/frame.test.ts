@@ -7,18 +7,20 @@ import { axe, box, browser, done, drawn, item, open, openWith, playground, press
 const SMALL = 'chart G1 {\n  initial step 0\n}\n';
 const NAMES = Array.from({ length: 14 }, (_, n) => `a-machine-with-a-long-name-${n + 1}.g7`);
 
-/** A chain of 120 steps. */
-const CHAIN = (() => {
-  const steps = Array.from({ length: 120 }, (_, n) => `  ${n === 0 ? 'initial ' : ''}step ${n}\n`);
-  const transitions = Array.from({ length: 119 }, (_, n) => `  ${n} -> ${n + 1} when a\n`);
+const chain = (count: number): string => {
+  const steps = Array.from({ length: count }, (_, n) => `  ${n === 0 ? 'initial ' : ''}step ${n}\n`);
+  const transitions = Array.from({ length: count - 1 }, (_, n) => `  ${n} -> ${n + 1} when a\n`);
   return `input a : BOOL\nchart G1 {\n${steps.join('')}${transitions.join('')}}\n`;
-})();
+};
+const CHAIN = chain(120);
+/** As a whole, it is drawn smaller than the wheel makes it. */
+const TALL = chain(1200);
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'chain.g7': CHAIN, ...Object.fromEntries(NAMES.map((name) => [name, SMALL])) });
+  site = await playground({ 'chain.g7': CHAIN, 'tall.g7': TALL, ...Object.fromEntries(NAMES.map((name) => [name, SMALL])) });
   b = await browser();
 });
 
@@ -77,6 +79,26 @@ test('the steps to jump to are found by typing', async () => {
   await page.keyboard.press('Enter');
   await drawn(page);
   assert.match(await textOf(page), / 1 -> 113 /);
+  await done(page);
+});
+
+test('a chart of thousands of steps is shown as a whole, and the wheel goes on from there', async () => {
+  const page = await open(b, site, 'tall.g7');
+  await page.locator('.sheet').focus();
+  await page.keyboard.press('f');
+  const inSight = () =>
+    page.evaluate(() => {
+      const sheet = document.querySelector('.sheet')?.getBoundingClientRect();
+      const all = [...document.querySelectorAll('.still *')].map((e) => e.getBoundingClientRect()).filter((r) => r.width > 0 || r.height > 0);
+      const [top, low] = [Math.min(...all.map((r) => r.top)), Math.max(...all.map((r) => r.bottom))];
+      return sheet !== undefined && top >= sheet.top && low <= sheet.bottom && low - top > sheet.height * 0.7;
+    });
+  await until(inSight, 'the chart fills the sheet and does not leave it');
+  await page.mouse.move(640, 300);
+  await page.keyboard.down('Control');
+  await page.mouse.wheel(0, -400);
+  await page.keyboard.up('Control');
+  await until(async () => !(await inSight()), 'the wheel goes nearer');
   await done(page);
 });
 

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import { readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { browser, open, playground, until, type Site } from './lib';
+import { axe, browser, open, playground, until, type Site } from './lib';
 
 const example = (path: string) => readFileSync(new URL(`../../examples/${path}`, import.meta.url), 'utf8');
 
@@ -458,6 +458,58 @@ test('the chronogram: cursors by keyboard, the difference of times, a table, fil
     assert.equal(file.suggestedFilename(), `lamp.${form.toLowerCase()}`);
     assert.match(readFileSync(await file.path(), 'utf8'), start);
   }
+  await end(p);
+});
+
+test('the line of time and the chronogram show one time', async () => {
+  const p = await open(b, site, 'lamp.g7');
+  await oneScan(p);
+  await p.getByRole('switch', { name: 'push', exact: true }).click();
+  for (let i = 0; i < 8; i++) await oneScan(p);
+  await until(async () => (await clock(p)) === '0.09 s', 'nine scans');
+  if ((await p.getByRole('tab', { name: 'Chronogram' }).count()) === 0) await p.getByRole('button', { name: 'Bottom' }).click();
+  await p.getByRole('tab', { name: 'Chronogram' }).click();
+  await p.getByRole('button', { name: 'Whole run' }).click();
+  const line = p.getByRole('slider', { name: 'Back in time' });
+  const value = p.locator('.names .name').filter({ hasText: 'push' }).locator('.value');
+  await until(async () => (await value.innerText()) === '1', 'the value of now');
+  // The chronogram follows the line of time: the values and the mark are those of that instant.
+  await line.fill('10');
+  await until(async () => (await value.innerText()) === '0', 'the value of then');
+  const lanes = p.locator('[role=group][aria-label^=Chronogram]');
+  const marked = () =>
+    lanes.locator('canvas').nth(1).evaluate((canvas: HTMLCanvasElement) => {
+      const accent = document.createElement('i');
+      accent.style.color = 'var(--accent)';
+      document.body.append(accent);
+      const wanted = /\d+, \d+, \d+/.exec(getComputedStyle(accent).color)?.[0];
+      accent.remove();
+      const { data, width } = canvas.getContext('2d')?.getImageData(0, 2, canvas.width, 1) as ImageData;
+      const place = Array.from({ length: width }, (_, x) => x).find((x) => [...data.slice(4 * x, 4 * x + 3)].join(', ') === wanted && data[4 * x + 3] === 255);
+      return place === undefined ? Number.NaN : place / width;
+    });
+  // The whole run is shown, and at least ten scans.
+  await until(async () => Math.abs((await marked()) - 0.1) < 0.01, 'the mark stands at 10 ms of 100');
+  // The times of the chronogram are a line of time as well.
+  const times = await lanes.locator('canvas').first().boundingBox();
+  assert.ok(times);
+  await p.mouse.move(times.x + times.width * 0.3, times.y + 8);
+  await p.mouse.down();
+  await p.mouse.move(times.x + times.width * 0.5, times.y + 8, { steps: 4 });
+  await p.mouse.up();
+  await until(async () => (await line.inputValue()) === '50' && (await active(p)) === '1', 'the chart is that of 50 ms');
+  await until(async () => Math.abs((await marked()) - 0.5) < 0.01, 'the mark stands at 50 ms');
+  // By keyboard: cursor A, and the chart as it was there.
+  await lanes.focus();
+  for (let i = 0; i < 8; i++) await p.keyboard.press('ArrowLeft');
+  await p.keyboard.press('Enter');
+  await until(async () => (await line.inputValue()) === '0' && (await active(p)) === '0', 'the chart is that of A');
+  await p.keyboard.press('ArrowRight');
+  await p.getByRole('button', { name: 'Go to A' }).click();
+  await until(async () => (await line.inputValue()) === '20', 'the chart is that of the next edge');
+  assert.deepEqual(await axe(p), []);
+  await p.getByRole('button', { name: 'Live', exact: true }).click();
+  await until(async () => Number.isNaN(await marked()), 'now has no such mark');
   await end(p);
 });
 

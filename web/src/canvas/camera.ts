@@ -67,7 +67,9 @@ export class Camera {
   fit(most = 1.5): void {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [ax, ay, aw, ah] = this.#area();
-    const k = Math.max(LEAST, Math.min(most, (w - 2 * SIDE) / Math.max(aw, 1), (h - TOP - LOW) / Math.max(ah, 1)));
+    const k = Math.min(most, Math.max(w - 2 * SIDE, 1) / Math.max(aw, 1), Math.max(h - TOP - LOW, 1) / Math.max(ah, 1));
+    // A chart of thousands of steps is smaller than the wheel makes it.
+    this.#zoom.scaleExtent([Math.min(LEAST, k), MOST]);
     this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: TOP + (h - TOP - LOW) / 2 - (ay + ah / 2) * k });
   }
 

@@ -71,10 +71,15 @@ class Chronogram {
     this.span = { from: 0, to: Math.max(run.end * 1.02, run.started.period_ms * 10) };
   }
 
-  /** Keeps the present near the right end. */
+  /** Keeps the present near the right end; while the run shows an instant of the past, keeps that in sight. */
   along(run: Run): void {
-    if (!this.following) return;
     const width = this.span.to - this.span.from;
+    if (!run.live) {
+      const from = Math.max(0, run.now - width / 2);
+      if (run.now < this.span.from || run.now > this.span.to) this.span = { from, to: from + width };
+      return;
+    }
+    if (!this.following) return;
     const to = Math.max(width, run.end + width * 0.06);
     if (to !== this.span.to) this.span = { from: to - width, to };
   }

@@ -77,6 +77,8 @@ export interface Painting {
   span: Span;
   /** The present; later values are not known. */
   now: number;
+  /** The instant of the past that the chart shows. */
+  seen?: number | null;
   lanes: readonly Lane[];
   /** Times with their texts, in place of seconds. */
   ticks?: readonly (readonly [ms: number, text: string])[];
@@ -172,8 +174,17 @@ export function paintAxis(g: CanvasRenderingContext2D, p: Painting): void {
     g.fillText(text, at + 3, AXIS / 2);
   }
   line(g, 0, AXIS - 0.5, width, AXIS - 0.5);
+  if (inSpan(p.seen, span)) {
+    const at = Math.round(x(p.seen)) + 0.5;
+    g.fillStyle = colours.accent;
+    g.beginPath();
+    g.moveTo(at - 6, AXIS - 10);
+    g.lineTo(at + 6, AXIS - 10);
+    g.lineTo(at, AXIS);
+    g.fill();
+  }
   p.cursors.forEach((ms, i) => {
-    if (ms === null || ms < span.from || ms > span.to) return;
+    if (!inSpan(ms, span)) return;
     const at = Math.round(x(ms)) + 0.5;
     const left = at < width - 20 ? at : at - 14;
     g.fillStyle = i === 0 ? colours.amber : colours.violet;
@@ -286,15 +297,24 @@ function curve(g: CanvasRenderingContext2D, { span, colours, now }: Painting, la
   g.stroke();
 }
 
-function cursors(g: CanvasRenderingContext2D, { height, cursors, colours, now, span }: Painting, x: X): void {
+function inSpan(ms: number | null | undefined, span: Span): ms is number {
+  return ms !== null && ms !== undefined && ms >= span.from && ms <= span.to;
+}
+
+function cursors(g: CanvasRenderingContext2D, { height, cursors, colours, now, seen, span }: Painting, x: X): void {
   if (now > span.from && now < span.to) {
     g.strokeStyle = colours.soft;
     g.setLineDash([2, 3]);
     line(g, Math.round(x(now)) + 0.5, 0, Math.round(x(now)) + 0.5, height);
     g.setLineDash([]);
   }
+  if (inSpan(seen, span)) {
+    g.strokeStyle = colours.accent;
+    g.lineWidth = 2;
+    line(g, Math.round(x(seen)) + 0.5, 0, Math.round(x(seen)) + 0.5, height);
+  }
   cursors.forEach((ms, i) => {
-    if (ms === null || ms < span.from || ms > span.to) return;
+    if (!inSpan(ms, span)) return;
     g.strokeStyle = i === 0 ? colours.amber : colours.violet;
     g.lineWidth = 1.5;
     line(g, Math.round(x(ms)) + 0.5, 0, Math.round(x(ms)) + 0.5, height);
