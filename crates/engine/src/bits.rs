@@ -187,6 +187,17 @@ impl Tree {
     /// Calls `f` with each member, in ascending order.
     #[inline(always)]
     pub(crate) fn each(&self, words: &[u64], mut f: impl FnMut(u32)) {
+        self.each_word(words, |i, mut rest| {
+            while rest != 0 {
+                f(i * 64 + rest.trailing_zeros());
+                rest &= rest - 1;
+            }
+        });
+    }
+
+    /// Calls `f` with each word of members that is not 0, and its place: member `64 i + k` is bit `k` of word `i`.
+    #[inline(always)]
+    pub(crate) fn each_word(&self, words: &[u64], mut f: impl FnMut(u32, u64)) {
         // The words of the lowest level that are not 0 are a set as well, one level up.
         let above = Tree {
             at: [self.at[1], self.at[2], self.at[3], self.at[4], 0],
@@ -195,11 +206,7 @@ impl Tree {
         let mut walk = Walk::new(&above, words);
         let mut next = if self.levels == 1 { Some(0) } else { walk.next(&above, words) };
         while let Some(i) = next {
-            let mut rest = word(words, (self.at[0] + i) as usize);
-            while rest != 0 {
-                f(i * 64 + rest.trailing_zeros());
-                rest &= rest - 1;
-            }
+            f(i, word(words, (self.at[0] + i) as usize));
             next = walk.next(&above, words);
         }
     }

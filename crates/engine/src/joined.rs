@@ -47,6 +47,8 @@ pub(crate) enum Compute {
     Arith(Arith, Num),
     Neg(Num),
     Convert(Num, Num),
+    /// A cell of an array, by its place: the row of [`Joined::arrays`].
+    Cell(u32),
     /// Nothing here: the instruction stands alone, and does with the stack what it does.
     Alone,
 }
@@ -88,6 +90,8 @@ pub(crate) enum Sink {
     Push,
     /// Into a word of the variable area.
     Store(Addr),
+    /// Into a cell of an array, whose place is popped: the row of [`Joined::arrays`].
+    StoreAt(u32),
     /// A jump where the value is 0.
     Unless(u32),
     /// A jump where it is not.
@@ -125,6 +129,8 @@ pub(crate) struct Joined {
     pub(crate) steps: Box<[Step]>,
     /// The constants that instructions push, ascending and without repetition.
     pub(crate) constants: Box<[u64]>,
+    /// The first word of each array that is indexed, and its length, ascending and without repetition.
+    pub(crate) arrays: Box<[(Addr, u32)]>,
     /// Number of words of the image.
     pub(crate) words: u32,
     /// The place of the variable area there.
@@ -138,8 +144,12 @@ impl Joined {
         let mut constants: Vec<u64> = t.code.iter().filter_map(pushed).collect();
         constants.sort_unstable();
         constants.dedup();
+        let mut arrays: Vec<(Addr, u32)> = t.code.iter().filter_map(array).collect();
+        arrays.sort_unstable();
+        arrays.dedup();
         let mut joined = Joined {
             constants: constants.into_boxed_slice(),
+            arrays: arrays.into_boxed_slice(),
             words: l.len,
             vars: l.vars,
             ..Joined::default()
@@ -159,7 +169,7 @@ impl Joined {
             *slot = operand;
             lead = k + 1;
         }
-        let (compute, wanted, own) = op(lead).map_or((Compute::Alone, 0, 1), computation);
+        let (compute, wanted, own) = op(lead).map_or((Compute::Alone, 0, 1), |op| self.computation(op));
         if lead > wanted {
             // The instruction wants fewer operands, or takes them from the stack: the first is pushed.
             let operands = [given[0], Operand::TOP, Operand::TOP];
@@ -169,7 +179,7 @@ impl Joined {
         given.rotate_right(wanted - lead);
         let (sink, more) = match compute {
             Compute::Alone => (Sink::Push, 0),
-            _ => sink(op(lead + own), op(lead + own + 1)),
+            _ => self.sink(op(lead + own), op(lead + own + 1)),
         };
         Step { compute, sink, operands: given, lead: lead as u8, len: (lead + own + more) as u8 }
     }
@@ -183,12 +193,45 @@ impl Joined {
             _ => None,
         }
     }
+
+    /// The row of the array that an instruction indexes.
+    fn array(&self, op: Op) -> u32 {
+        let row = array(&op).and_then(|array| self.arrays.binary_search(&array).ok());
+        row.map_or(u32::MAX, |row| row as u32)
+    }
+
+    /// The computation of an instruction, the number of its operands, and 1 where it is more than a sink.
+    fn computation(&self, op: Op) -> (Compute, usize, usize) {
+        match op {
+            Op::LoadAt { .. } => (Compute::Cell(self.array(op)), 1, 1),
+            op => computation(op),
+        }
+    }
+
+    /// The use that the two instructions behind a computation make of its value, and how many of them do.
+    fn sink(&self, next: Option<Op>, second: Option<Op>) -> (Sink, usize) {
+        match (next, second) {
+            (Some(Op::Store(a)), _) => (Sink::Store(a), 1),
+            (Some(op @ Op::StoreAt { .. }), _) => (Sink::StoreAt(self.array(op)), 1),
+            (Some(Op::JumpUnless(to)), _) => (Sink::Unless(to), 1),
+            (Some(Op::Not), Some(Op::JumpUnless(to))) => (Sink::When(to), 2),
+            _ => (Sink::Push, 0),
+        }
+    }
 }
 
-/// The computation of an instruction, the number of its operands, and 1 where it is more than a sink.
+/// The array that an instruction indexes.
+fn array(op: &Op) -> Option<(Addr, u32)> {
+    match *op {
+        Op::LoadAt { base, len } | Op::StoreAt { base, len } => Some((base, len)),
+        _ => None,
+    }
+}
+
+/// As [`Joined::computation`], for instructions that index no array.
 fn computation(op: Op) -> (Compute, usize, usize) {
     match op {
-        Op::Store(_) | Op::JumpUnless(_) => (Compute::Same, 1, 0),
+        Op::Store(_) | Op::StoreAt { .. } | Op::JumpUnless(_) => (Compute::Same, 1, 0),
         Op::Not => (Compute::Not, 1, 1),
         Op::Neg(n) => (Compute::Neg(n), 1, 1),
         Op::Convert(from, to) => (Compute::Convert(from, to), 1, 1),
@@ -218,15 +261,5 @@ fn arithmetic(a: Arith, n: Num) -> Compute {
         (Arith::Sub, Num::F64) => Compute::Sub,
         (Arith::Mul, Num::F64) => Compute::Mul,
         _ => Compute::Arith(a, n),
-    }
-}
-
-/// The use that the two instructions behind a computation make of its value, and how many of them do.
-fn sink(next: Option<Op>, second: Option<Op>) -> (Sink, usize) {
-    match (next, second) {
-        (Some(Op::Store(a)), _) => (Sink::Store(a), 1),
-        (Some(Op::JumpUnless(to)), _) => (Sink::Unless(to), 1),
-        (Some(Op::Not), Some(Op::JumpUnless(to))) => (Sink::When(to), 2),
-        _ => (Sink::Push, 0),
     }
 }

@@ -69,6 +69,7 @@ mod rules;
 mod run;
 mod scan;
 mod scratch;
+mod sleepers;
 mod stack;
 mod state;
 mod tables;

@@ -111,6 +111,15 @@ fn follow(p: &Program, image: &mut [u64], tagged: u32, on: bool) {
 /// Collects the clearable transitions behind the hot steps, and the other active steps in `slow`.
 #[inline]
 pub(crate) fn collect(p: &Program, s: &mut State) {
+    if p.sleepers.is_empty() {
+        look_at_all(p, s);
+    } else {
+        look_at_some(p, s);
+    }
+}
+
+#[inline(always)]
+fn look_at_all(p: &Program, s: &mut State) {
     let State { image, scratch, steps, .. } = s;
     let image: &[u64] = image;
     // On the stack, these lists need not be written back at each step.
@@ -124,6 +133,38 @@ pub(crate) fn collect(p: &Program, s: &mut State) {
             Some(h) if h.waits_for == NONE => slow.push(step),
             Some(h) if holds(p, image, h) => fired.push(h.rank),
             _ => {}
+        }
+    });
+    scratch.lone = if seen == 1 { last } else { NONE };
+    (scratch.fired, scratch.slow) = (fired, slow);
+}
+
+/// Looks at the active steps that do not sleep, and lets those sleep whose receptivity is FALSE until
+/// what it reads changes.
+#[inline(never)]
+fn look_at_some(p: &Program, s: &mut State) {
+    let State { image, scratch, steps, .. } = s;
+    let image: &[u64] = image;
+    let (mut fired, mut slow) = (take(&mut scratch.fired), take(&mut scratch.slow));
+    slow.clear();
+    let (mut seen, mut last) = (0u32, NONE);
+    steps.each_word(image, |i, active| {
+        // Two for "more than one".
+        seen = (seen + if active.is_power_of_two() { 1 } else { 2 }).min(2);
+        last = i * 64 + active.trailing_zeros();
+        let mut tired = 0;
+        let mut rest = active & !word(&scratch.asleep, i as usize);
+        while rest != 0 {
+            let step = i * 64 + rest.trailing_zeros();
+            match p.hot.get(step as usize) {
+                Some(h) if h.waits_for == NONE => slow.push(step),
+                Some(h) if holds(p, image, h) => fired.push(h.rank),
+                _ => tired |= rest & rest.wrapping_neg(),
+            }
+            rest &= rest - 1;
+        }
+        if let Some(asleep) = scratch.asleep.get_mut(i as usize) {
+            *asleep |= tired & p.sleepers.can(i);
         }
     });
     scratch.lone = if seen == 1 { last } else { NONE };

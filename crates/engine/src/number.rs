@@ -3,19 +3,26 @@
 use crate::fault::FaultKind;
 use crate::ops::{Arith, Builtin, Cmp, Num};
 
-/// Smallest and largest value of an integer kind (BOOL counts as 0..1).
-fn bounds(n: Num) -> (i128, i128) {
+/// Smallest and largest value of an integer kind other than ULINT (BOOL counts as 0..1). Most sums and
+/// products are those of such kinds, and words of 128 bits cost several times as much.
+#[inline(always)]
+fn short_bounds(n: Num) -> (i64, i64) {
     match n {
         Num::Bool => (0, 1),
         Num::I8 => (i8::MIN.into(), i8::MAX.into()),
         Num::I16 => (i16::MIN.into(), i16::MAX.into()),
         Num::I32 => (i32::MIN.into(), i32::MAX.into()),
-        Num::I64 | Num::F32 | Num::F64 => (i64::MIN.into(), i64::MAX.into()),
         Num::U8 => (0, u8::MAX.into()),
         Num::U16 => (0, u16::MAX.into()),
         Num::U32 => (0, u32::MAX.into()),
-        Num::U64 => (0, u64::MAX.into()),
+        Num::I64 | Num::U64 | Num::F32 | Num::F64 => (i64::MIN, i64::MAX),
     }
+}
+
+/// Smallest and largest value of an integer kind.
+fn bounds(n: Num) -> (i128, i128) {
+    let (least, most) = short_bounds(n);
+    if n == Num::U64 { (0, u64::MAX.into()) } else { (least.into(), most.into()) }
 }
 
 /// The number that a word of an integer kind stands for.
@@ -28,6 +35,13 @@ fn whole(n: Num, v: u64) -> i128 {
 
 fn fit(n: Num, v: i128) -> Result<u64, FaultKind> {
     let (least, most) = bounds(n);
+    if v < least || v > most { Err(FaultKind::Overflow) } else { Ok(v as u64) }
+}
+
+/// [`fit`] for a kind other than ULINT.
+#[inline(always)]
+fn fit_short(n: Num, v: i64) -> Result<u64, FaultKind> {
+    let (least, most) = short_bounds(n);
     if v < least || v > most { Err(FaultKind::Overflow) } else { Ok(v as u64) }
 }
 
@@ -106,19 +120,39 @@ pub fn arith(op: Arith, n: Num, a: u64, b: u64) -> Result<u64, FaultKind> {
     match n {
         Num::F32 => arith_f32(op, f32::from_bits(a as u32), f32::from_bits(b as u32)),
         Num::F64 => arith_f64(op, f64::from_bits(a), f64::from_bits(b)),
-        Num::Bool | Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::U8 | Num::U16 | Num::U32 | Num::U64 => {
-            let (x, y) = (whole(n, a), whole(n, b));
-            let v = match op {
-                Arith::Add => x + y,
-                Arith::Sub => x - y,
-                Arith::Mul => x.checked_mul(y).ok_or(FaultKind::Overflow)?,
-                Arith::Div => x.checked_div(y).ok_or(FaultKind::DivisionByZero)?,
-                Arith::Mod => x.checked_rem(y).ok_or(FaultKind::DivisionByZero)?,
-                Arith::Pow => return Err(FaultKind::Range),
-            };
-            fit(n, v)
+        Num::U64 => arith_u64(op, a, b),
+        Num::Bool | Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::U8 | Num::U16 | Num::U32 => {
+            fit_short(n, arith_i64(op, a as i64, b as i64)?)
         }
     }
+}
+
+#[inline(always)]
+fn arith_i64(op: Arith, x: i64, y: i64) -> Result<i64, FaultKind> {
+    let v = match op {
+        Arith::Add => x.checked_add(y),
+        Arith::Sub => x.checked_sub(y),
+        Arith::Mul => x.checked_mul(y),
+        Arith::Div | Arith::Mod if y == 0 => return Err(FaultKind::DivisionByZero),
+        Arith::Div => x.checked_div(y),
+        // The remainder of the least number by -1 is 0, though the quotient is too large.
+        Arith::Mod => Some(x.wrapping_rem(y)),
+        Arith::Pow => return Err(FaultKind::Range),
+    };
+    v.ok_or(FaultKind::Overflow)
+}
+
+fn arith_u64(op: Arith, x: u64, y: u64) -> Result<u64, FaultKind> {
+    let v = match op {
+        Arith::Add => x.checked_add(y),
+        Arith::Sub => x.checked_sub(y),
+        Arith::Mul => x.checked_mul(y),
+        Arith::Div | Arith::Mod if y == 0 => return Err(FaultKind::DivisionByZero),
+        Arith::Div => x.checked_div(y),
+        Arith::Mod => Some(x % y),
+        Arith::Pow => return Err(FaultKind::Range),
+    };
+    v.ok_or(FaultKind::Overflow)
 }
 
 fn arith_f32(op: Arith, a: f32, b: f32) -> Result<u64, FaultKind> {
@@ -161,7 +195,8 @@ pub fn convert(from: Num, to: Num, v: u64) -> Result<u64, FaultKind> {
             // It is rounded once, to the width of the result: twice could give another value.
             Ok(if to == Num::F32 { u64::from((x as f32).to_bits()) } else { (x as f64).to_bits() })
         }
-        (false, false) => fit(to, whole(from, v)),
+        (false, false) if from == Num::U64 || to == Num::U64 => fit(to, whole(from, v)),
+        (false, false) => fit_short(to, v as i64),
     }
 }
 

@@ -16,6 +16,7 @@ use crate::layout::Layout;
 use crate::ops::{Op, TEXT};
 use crate::rows::{Hot, Move, Parts};
 use crate::rules::PATIENCE;
+use crate::sleepers::Sleepers;
 use crate::tables::{Extra, NONE, Receptivity, Tables};
 
 /// A checked, immutable compiled chart. Only [`Program::new`] makes one.
@@ -67,6 +68,8 @@ pub struct Program {
     pub(crate) hot: Box<[Hot]>,
     /// A row for each transition.
     pub(crate) moves: Box<[Move]>,
+    /// The steps that a pass need not look at while what they wait for stays as it is.
+    pub(crate) sleepers: Sleepers,
     /// All transitions are plain.
     pub(crate) all_plain: bool,
     /// Moves of a token may change the inputs of control blocks.
@@ -133,9 +136,12 @@ impl Program {
         let given = Given::new(&t, &layout);
         let parts = Parts { t: &t, l: &layout, gates: &gates, given: &given, tags };
         let moves = parts.moves(plain);
+        let hot = parts.hot(&decisions, &moves);
+        let judges_freely = t.transitions.iter().all(|tr| !writes_in(&t, tr.receptivity));
         let calm = !frame && !has_periods && !counts && t.sources.is_empty();
         Program {
-            judges_freely: t.transitions.iter().all(|tr| !writes_in(&t, tr.receptivity)),
+            judges_freely,
+            sleepers: if judges_freely { Sleepers::new(&t, &hot) } else { Sleepers::default() },
             brisk: plain
                 && calm
                 && !t.rules.periodic_first
@@ -144,7 +150,7 @@ impl Program {
             watches_inputs: t.word_watches.iter().any(|(a, _)| (t.inputs.start..t.inputs.end).contains(&a.0)),
             awake: layout.awake(&t),
             blocks: Row::all(&t, &layout),
-            hot: parts.hot(&decisions, &moves),
+            hot,
             all_plain: moves.iter().all(|m| m.plain),
             counted: tags && t.extras.iter().any(|e| given.alone(e)),
             moves,

@@ -46,9 +46,13 @@ pub(crate) fn condition(p: &Program, s: &mut State, code: Code) -> Result<bool, 
     Ok(code.is_empty() || value(p, s, code)? != 0)
 }
 
-fn index(s: &mut State, len: u32) -> Result<u32, FaultKind> {
-    let i = s.scratch.stack.pop() as i64;
-    u32::try_from(i).ok().filter(|i| *i < len).ok_or(FaultKind::Range)
+/// The word of a cell of an array: the row of the array, the place of the cell.
+#[inline(always)]
+fn cell(p: &Program, row: u32, place: u64) -> Result<Addr, FaultKind> {
+    match p.joined.arrays.get(row as usize) {
+        Some((base, len)) if place < u64::from(*len) => Ok(Addr(base.0 + place as u32)),
+        _ => Err(FaultKind::Range),
+    }
 }
 
 /// The value of an operand.
@@ -165,11 +169,20 @@ fn make(p: &Program, s: &mut State, step: &Step, pc: u32) -> Result<u32, Fault> 
         }
         Compute::Neg(n) => negate(n, take(p, s, operands[0])).map_err(fault)?,
         Compute::Convert(from, to) => convert(from, to, take(p, s, operands[0])).map_err(fault)?,
+        Compute::Cell(row) => {
+            let place = take(p, s, operands[0]);
+            read(s, cell(p, row, place).map_err(fault)?)
+        }
         Compute::Alone => return alone(p, s, pc),
     };
     match step.sink {
         Sink::Push => s.scratch.stack.push(value),
         Sink::Store(a) => write(p, s, a, value),
+        Sink::StoreAt(row) => {
+            let place = s.scratch.stack.pop();
+            let at = Some(next - 1);
+            write(p, s, cell(p, row, place).map_err(|kind| Fault { kind, at })?, value);
+        }
         Sink::Unless(to) if value == 0 => return jump(s, next - 1, to),
         Sink::When(to) if value != 0 => return jump(s, next - 1, to),
         Sink::Unless(_) | Sink::When(_) => {}
@@ -221,16 +234,6 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
         Op::Timer(w) => {
             let v = u64::from(bit(&s.image, p.layout.q, w.0));
             s.scratch.stack.push(v);
-        }
-        Op::LoadAt { base, len } => {
-            let i = index(s, len)?;
-            let v = read(s, Addr(base.0 + i));
-            s.scratch.stack.push(v);
-        }
-        Op::StoreAt { base, len } => {
-            let v = s.scratch.stack.pop();
-            let i = index(s, len)?;
-            write(p, s, Addr(base.0 + i), v);
         }
         Op::GroupActive(g) => {
             let v = u64::from(s.group_active(p, g));
@@ -301,6 +304,8 @@ fn rare(p: &Program, s: &mut State, op: Op) -> Result<(), FaultKind> {
         Op::Push(_)
         | Op::Load(_)
         | Op::Store(_)
+        | Op::LoadAt { .. }
+        | Op::StoreAt { .. }
         | Op::Not
         | Op::And
         | Op::Or

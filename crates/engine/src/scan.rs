@@ -91,7 +91,11 @@ fn begin_short(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Begun {
         if !brisk || p.watches_inputs && watched(p, area, inputs) {
             return Begun::No;
         }
-        take(area, inputs);
+        if p.sleepers.is_empty() {
+            take(area, inputs);
+        } else {
+            take_each(p, area, &mut s.scratch.asleep, inputs);
+        }
     }
     tick(s, now.wrapping_sub(before), now);
     s.scratch.begin_brisk();
@@ -105,6 +109,20 @@ fn take(area: &mut [u64], inputs: &[u64]) {
         ([a], [i]) => *a = *i,
         ([a, b], [i, j]) => (*a, *b) = (*i, *j),
         (area, inputs) => area.copy_from_slice(inputs),
+    }
+}
+
+/// Takes the inputs over, and wakes the steps that wait for one that changes.
+#[inline(never)]
+fn take_each(p: &Program, area: &mut [u64], asleep: &mut [u64], inputs: &[u64]) {
+    if area == inputs {
+        return;
+    }
+    for ((i, old), new) in (p.tables.inputs.start..).zip(area).zip(inputs) {
+        if *old != *new {
+            *old = *new;
+            p.sleepers.wake(asleep, Addr(i));
+        }
     }
 }
 

@@ -91,6 +91,25 @@ fn whole_numbers_calculate_within_their_kind() {
         (Num::U64, 0, i128::from(u64::MAX)),
     ] {
         let word = |v: i128| v as u64;
+        // Each operation between the ends and what lies beside them and beside 0, in numbers without an end.
+        let near = [low, low + 1, low / 2, -2, -1, 0, 1, 2, high / 2, high / 2 + 1, high - 1, high];
+        let near = || near.into_iter().filter(|v| (low..=high).contains(v));
+        for (a, b) in near().flat_map(|a| near().map(move |b| (a, b))) {
+            for (op, exact) in [
+                (Add, Some(a + b)),
+                (Sub, Some(a - b)),
+                (Mul, a.checked_mul(b)),
+                (Div, a.checked_div(b)),
+                (Mod, a.checked_rem(b)),
+            ] {
+                let wanted = match exact {
+                    Some(v) if (low..=high).contains(&v) => Ok(word(v)),
+                    None if b == 0 => BY_ZERO,
+                    _ => OVERFLOW,
+                };
+                assert_eq!(done(&[word(a), word(b)], Op::Arith(op, n)), wanted, "{a} {op:?} {b} as {n:?}");
+            }
+        }
         assert_eq!(done(&[word(high - 1), 1], Op::Arith(Add, n)), Ok(word(high)), "{n:?}");
         assert_eq!(done(&[word(high), 1], Op::Arith(Add, n)), OVERFLOW, "{n:?}");
         assert_eq!(done(&[word(low + 1), 1], Op::Arith(Sub, n)), Ok(word(low)), "{n:?}");

@@ -367,6 +367,85 @@ fn a_lone_token_goes_the_same_way() {
     assert!(lone > 2_500, "only {lone} moves of a lone token");
 }
 
+/// Many steps that are active at once, each with one transition, which waits for an input, a variable that code
+/// writes, a variable that is written from outside, or an output that follows a step.
+fn crowd(chance: &mut Chance, rules: Rules) -> Tables {
+    let steps = 80 + chance.below(120);
+    let arcs: Vec<Arc> = (0..steps)
+        .map(|from| {
+            let to = if chance.below(3) == 0 { chance.below(steps) } else { (from + 1) % steps };
+            let input = chance.below(3) as i32;
+            (vec![from], vec![to], Some(if chance.below(4) == 0 { -1 - input } else { input }))
+        })
+        .collect();
+    let initial: Vec<u32> = (0..steps).filter(|_| chance.below(2) == 0).collect();
+    let mut t = chart(rules, steps, 3, &initial, &arcs);
+    let variables = t.init.len() as u32;
+    t.init.extend([0, 0]);
+    for transition in &mut t.transitions {
+        let start = t.code.len() as u32;
+        let leaf = match chance.below(8) {
+            0 => Op::Load(Addr(variables)),
+            1 => Op::Load(Addr(variables + 1)),
+            2 => Op::Load(Addr(3 + chance.below(steps))),
+            _ => continue,
+        };
+        match leaf {
+            Op::Load(a) if chance.below(2) == 0 => transition.receptivity = Receptivity::Word(a),
+            leaf => {
+                t.code.extend([leaf, Op::Load(Addr(chance.below(3))), Op::Or]);
+                transition.receptivity = Receptivity::Code(Code { start, end: start + 3 });
+            }
+        }
+    }
+    // POST turns the first variable round while the first input is TRUE.
+    if chance.below(2) == 0 {
+        let start = t.code.len() as u32;
+        let (variable, input) = (Addr(variables), Addr(0));
+        t.code.extend([Op::Load(variable), Op::Load(input), Op::Xor, Op::Store(variable)]);
+        t.post = Code { start, end: start + 4 };
+    }
+    t
+}
+
+#[test]
+fn steps_that_sleep_are_woken() {
+    let mut chance = Chance(23);
+    let (mut moved, mut still) = (0u64, 0u64);
+    for round in 0..300 {
+        let rules = if round % 3 == 0 { Rules::IEC60848 } else { Rules::IEC61131 };
+        let rules = Rules { multi_token: chance.below(2) == 0, ..rules };
+        let tables = crowd(&mut chance, rules);
+        let outside = Addr(tables.init.len() as u32 - 1);
+        let long = roundabout(&tables);
+        let mut both = Both::new(tables, long);
+        let mut earlier = [&both.a, &both.b].map(|s| s.image().to_vec());
+        for k in 0..60 {
+            both.move_inputs(&mut chance);
+            both.disturb(&mut chance);
+            if chance.below(4) == 0 {
+                let value = u64::from(chance.below(2));
+                both.a.set_word(&both.short, outside, value);
+                both.b.set_word(&both.long, outside, value);
+            }
+            // A state that goes back to an earlier image forgets what it has seen since.
+            if chance.below(10) == 0 {
+                both.a.restore(&both.short, &earlier[0]).expect("the image is of this program");
+                both.b.restore(&both.long, &earlier[1]).expect("the image is of this program");
+            } else if chance.below(4) == 0 {
+                earlier = [&both.a, &both.b].map(|s| s.image().to_vec());
+            }
+            let [x, y] = both.scan(k);
+            assert_eq!(x.is_ok(), y.is_ok(), "round {round}, scan {k}: {x:?} {y:?}");
+            let Ok(x) = x else { break };
+            assert_eq!(memory(&both.a), memory(&both.b), "round {round}, scan {k}");
+            moved += u64::from(x.cleared);
+            still += u64::from(x.cleared == 0);
+        }
+    }
+    assert!(moved > 50_000 && still > 1_000, "{moved} clearings, {still} scans without");
+}
+
 /// The active steps, their times where these are read, and the outputs.
 fn shown(p: &Program, s: &State) -> (Vec<(StepId, i64)>, Vec<u64>) {
     let read = |step| p.tables().code.contains(&Op::StepTime(step));
