@@ -76,7 +76,7 @@ test('what a deleted transition leaves without a way in stays where it was', asy
   const page = await openWith(b, site, 'chain.g7', {}, TALL);
   const was = await places(page, numbers(9));
   await press(page, 'G/t/7');
-  await page.locator('.near').getByRole('button', { name: 'Delete', exact: true }).click();
+  await page.keyboard.press('Delete');
   await item(page, 'G/t/9').waitFor({ state: 'detached' });
   assert.deepEqual(await places(page, numbers(9)), was);
   await page.keyboard.press('Control+z');
@@ -100,6 +100,12 @@ test('the command says what it joins, in each language', async () => {
   await page.mouse.click(...(await core(page, 'G/t/2')), { button: 'right' });
   assert.equal(await page.getByRole('menuitem', { name: /^Delete/ }).count(), 1, 'nothing can be joined');
   await done(page);
+  for (const [language, name] of [['fr', 'Supprimer et relier 4 → 6'], ['pt', 'Apagar e ligar 4 → 6']] as const) {
+    const other = await openWith(b, site, 'chain.g7', { language }, TALL);
+    await press(other, 'G/s/5');
+    await other.locator('.near').getByRole('button', { name, exact: true }).waitFor();
+    await done(other);
+  }
 });
 
 test('a selected link shows its ends, and each can be taken elsewhere', async () => {
