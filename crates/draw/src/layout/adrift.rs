@@ -12,6 +12,10 @@ use g7_model::{Step, StepKind};
 
 use crate::layout::lists::Lists;
 
+/// A chart with more loose parts than this is not one from which something was cut; its parts stand beside one
+/// another.
+const MOST: usize = 64;
+
 /// Missing symbols between nodes without a way on and nodes without a way in. The nodes have the numbers of the
 /// chart: steps first, then transitions.
 #[derive(Debug, PartialEq, Eq)]
@@ -67,9 +71,13 @@ pub(crate) fn gaps(steps: &[&Step], nodes: usize, links: &[(u32, u32)]) -> Vec<G
     if reached.iter().all(|r| *r) {
         return Vec::new();
     }
+    let parts = chart.parts(&reached);
+    if parts.len() > MOST {
+        return Vec::new();
+    }
     let ends = chart.ends();
     let mut gaps = Vec::new();
-    for part in chart.parts(&reached) {
+    for part in parts {
         let from = chart.before(&part, &ends);
         if from.is_empty() {
             continue;
@@ -110,6 +118,18 @@ impl Chart<'_> {
         reached
     }
 
+    /// The nodes from which ways lead to these.
+    fn back_from(&self, seeds: impl Iterator<Item = u32>) -> Vec<bool> {
+        let mut reached = vec![false; self.nodes];
+        let mut stack: Vec<u32> = seeds.collect();
+        while let Some(n) = stack.pop() {
+            if !std::mem::replace(&mut reached[n as usize], true) {
+                stack.extend(self.previous(n));
+            }
+        }
+        reached
+    }
+
     /// The nodes to which ways lead from where the chart begins: at the first of the steps that become active by
     /// themselves or from outside, otherwise at its first step, and at source transitions.
     fn reached(&self) -> Vec<bool> {
@@ -130,27 +150,28 @@ impl Chart<'_> {
         for t in (self.steps.len() as u32..self.nodes as u32).filter(open) {
             ends.extend(self.previous(t).max().map(|s| End { place: s, node: t, in_loop: false }));
         }
-        let loops = (0..self.steps.len() as u32).filter(|s| self.closes_loop(*s));
-        ends.extend(loops.map(|s| End { place: s, node: s, in_loop: true }));
+        let closed = self.closed_loops().into_iter();
+        ends.extend(closed.map(|s| End { place: s, node: s, in_loop: true }));
         ends.sort_unstable();
         ends
     }
 
-    /// True if a step is the last one, in the order of the text, of a loop without a way out in which the chart does
-    /// not begin.
-    fn closes_loop(&self, step: u32) -> bool {
-        let ways = self.from_here(self.next(step));
-        let last = (0..self.steps.len() as u32).rev().find(|s| ways[*s as usize]);
-        if last != Some(step) || self.first().is_some_and(|f| ways[f as usize]) {
-            return false;
-        }
-        let (mut back, mut stack) = (vec![false; self.nodes], vec![step]);
-        while let Some(n) = stack.pop() {
-            if !std::mem::replace(&mut back[n as usize], true) {
-                stack.extend(self.previous(n));
+    /// The last step, in the order of the text, of each loop without a way out in which the chart does not begin.
+    fn closed_loops(&self) -> Vec<u32> {
+        let open = (0..self.nodes as u32).filter(|n| self.out.of(*n).is_empty());
+        let mut done = self.back_from(open.chain(self.first()));
+        let mut found = Vec::new();
+        for step in (0..self.steps.len() as u32).rev() {
+            if done[step as usize] {
+                continue;
+            }
+            let (ways, back) = (self.from_here(self.next(step)), self.back_from([step].into_iter()));
+            if ways[step as usize] && ways.iter().zip(&back).all(|(way, back)| *back || !way) {
+                found.push(step);
+                done.iter_mut().zip(back).for_each(|(to, of)| *to |= of);
             }
         }
-        ways.iter().zip(back).all(|(way, back)| back || !way)
+        found
     }
 
     fn parts(&self, reached: &[bool]) -> Vec<Part> {
