@@ -107,7 +107,7 @@ impl Chart<'_> {
     }
 
     /// The nodes to which ways lead from these.
-    fn from_here(&self, seeds: impl Iterator<Item = u32>) -> Vec<bool> {
+    fn onward(&self, seeds: impl Iterator<Item = u32>) -> Vec<bool> {
         let mut reached = vec![false; self.nodes];
         let mut stack: Vec<u32> = seeds.collect();
         while let Some(n) = stack.pop() {
@@ -119,7 +119,7 @@ impl Chart<'_> {
     }
 
     /// The nodes from which ways lead to these.
-    fn back_from(&self, seeds: impl Iterator<Item = u32>) -> Vec<bool> {
+    fn backward(&self, seeds: impl Iterator<Item = u32>) -> Vec<bool> {
         let mut reached = vec![false; self.nodes];
         let mut stack: Vec<u32> = seeds.collect();
         while let Some(n) = stack.pop() {
@@ -134,7 +134,7 @@ impl Chart<'_> {
     /// themselves or from outside, otherwise at its first step, and at source transitions.
     fn reached(&self) -> Vec<bool> {
         let sources = (self.steps.len() as u32..self.nodes as u32).filter(|t| self.into.of(*t).is_empty());
-        self.from_here(sources.chain(self.first()))
+        self.onward(sources.chain(self.first()))
     }
 
     fn first(&self) -> Option<u32> {
@@ -159,13 +159,13 @@ impl Chart<'_> {
     /// The last step, in the order of the text, of each loop without a way out in which the chart does not begin.
     fn closed_loops(&self) -> Vec<u32> {
         let open = (0..self.nodes as u32).filter(|n| self.out.of(*n).is_empty());
-        let mut done = self.back_from(open.chain(self.first()));
+        let mut done = self.backward(open.chain(self.first()));
         let mut found = Vec::new();
         for step in (0..self.steps.len() as u32).rev() {
             if done[step as usize] {
                 continue;
             }
-            let (ways, back) = (self.from_here(self.next(step)), self.back_from([step].into_iter()));
+            let (ways, back) = (self.onward(self.next(step)), self.backward([step].into_iter()));
             if ways[step as usize] && ways.iter().zip(&back).all(|(way, back)| *back || !way) {
                 found.push(step);
                 done.iter_mut().zip(back).for_each(|(to, of)| *to |= of);
@@ -201,11 +201,11 @@ impl Chart<'_> {
     /// The steps at which a part begins: those without a way in, and the first one of each loop that has none.
     fn heads(&self, nodes: &[u32]) -> Vec<u32> {
         let mut heads: Vec<u32> = nodes.iter().copied().filter(|n| self.into.of(*n).is_empty()).collect();
-        let mut seen = self.from_here(heads.iter().copied());
+        let mut seen = self.onward(heads.iter().copied());
         for &n in nodes.iter().filter(|n| self.is_step(**n)) {
             if !seen[n as usize] {
                 heads.push(n);
-                let more = self.from_here([n].into_iter());
+                let more = self.onward([n].into_iter());
                 seen.iter_mut().zip(more).for_each(|(to, of)| *to |= of);
             }
         }
@@ -235,7 +235,7 @@ impl Chart<'_> {
 
     /// True if a part leads to where no other way leads from a step.
     fn needs(&self, step: u32, part: &Part) -> bool {
-        let ways = self.from_here([step].into_iter());
+        let ways = self.onward([step].into_iter());
         part.returns.iter().any(|n| !ways[*n as usize])
     }
 
@@ -246,7 +246,7 @@ impl Chart<'_> {
             if self.out.of(fork).len() < 2 {
                 continue;
             }
-            let branches: Vec<Vec<bool>> = self.next(fork).map(|n| self.from_here([n].into_iter())).collect();
+            let branches: Vec<Vec<bool>> = self.next(fork).map(|n| self.onward([n].into_iter())).collect();
             if branches.iter().any(|b| b[step as usize]) {
                 let others = branches.iter().filter(|b| !b[step as usize]);
                 others.for_each(|b| beside.iter_mut().zip(b).for_each(|(to, of)| *to |= of));
