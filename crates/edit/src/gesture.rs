@@ -37,6 +37,15 @@ pub enum Gesture {
         /// The end of the link.
         to: ItemId,
     },
+    /// Takes one end of a link to another symbol.
+    Relink {
+        /// The link, or one end of a broken one.
+        link: ItemId,
+        /// The end that moves.
+        end: LinkEnd,
+        /// The step or transition at which it ends then.
+        to: ItemId,
+    },
     /// Inserts a step and a transition into a link.
     Insert {
         /// The link.
@@ -283,6 +292,17 @@ pub enum What {
     Macro,
     /// An enclosing step.
     Enclosing,
+}
+
+/// The two ends of a link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[serde(rename_all = "snake_case")]
+pub enum LinkEnd {
+    /// The symbol that it leaves.
+    From,
+    /// The symbol to which it leads.
+    To,
 }
 
 /// Kinds of branching.

@@ -33,8 +33,8 @@ mod splice;
 pub use change::{Anchors, Edit, Refusal, Source};
 pub use copy::{copy, copy_placed};
 use g7_model::say;
-pub use gesture::{Alignment, Branching, ChartSort, Gesture, Row, Sort, What};
-pub use gestures::Renaming;
+pub use gesture::{Alignment, Branching, ChartSort, Gesture, LinkEnd, Row, Sort, What};
+pub use gestures::{Joined, Renaming};
 pub use history::History;
 pub use id::{End, ItemId, NoId, Part};
 pub use splice::{Splice, spliced};
@@ -74,6 +74,7 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     let mut draft = Draft::new(source, anchors);
     gestures::carry_out(&mut draft, gesture)?;
     difference::settle(&mut draft);
+    gestures::hold(&mut draft);
     let splices = difference::difference(&draft);
     let mut tree = read(source, &splices).ok_or_else(unwritable)?;
     judge(source, &splices, &tree, &draft.doc)?;
@@ -89,6 +90,11 @@ pub fn apply_placed(source: &Source<'_>, gesture: &Gesture, anchors: Anchors<'_>
     let select = draft.select.iter().filter_map(|m| draft.resolved(m)).collect();
     let begin = draft.begin.as_ref().and_then(|m| draft.resolved(m));
     Ok(Edit { splices, select, begin, told: draft.told, read: Some(Box::new(tree)) })
+}
+
+/// The steps that a deletion of parts of one chart would join if it heals.
+pub fn joins(source: &Source<'_>, ids: &[ItemId]) -> Result<Vec<Joined>, Refusal> {
+    gestures::joins(&mut Draft::new(source, &|_| None), ids)
 }
 
 /// Renames the part that is named at a byte of the text, wherever it is used.

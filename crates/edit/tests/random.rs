@@ -173,7 +173,7 @@ fn variable(rng: &mut Rng, doc: &Document) -> String {
 fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
     let id = an_id(rng, doc);
     let or_and = if rng.below(2) == 0 { "or" } else { "and" };
-    match rng.below(33) {
+    match rng.below(34) {
         0 => json!({"g": "add_step", "chart": chart(rng, doc), "at": [rng.below(900) as f64, -12.5]}),
         1 => json!({"g": "add_step", "chart": chart(rng, doc)}),
         2 | 3 => json!({"g": "next", "id": id}),
@@ -228,6 +228,7 @@ fn a_gesture(rng: &mut Rng, text: &str, doc: &Document) -> Value {
             2 => json!({"g": "profile", "name": rng.text(&["pl7", "unity", "what"])}),
             _ => json!({"g": "scan", "ms": rng.below(50) as f64 / 4.0}),
         },
+        32 => json!({"g": "relink", "link": id, "end": rng.text(&["from", "to"]), "to": an_id(rng, doc)}),
         31 => {
             let text = rng.text(&["a note", "", "two\nlines \"quoted\"", "`b\\`"]);
             json!({"g": "comment_at", "chart": chart(rng, doc), "text": text, "at": [rng.below(400), -7.25]})

@@ -5,7 +5,7 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 use g7_draw::Options;
-use g7_edit::{Edit, Gesture, ItemId};
+use g7_edit::{Edit, Gesture, ItemId, Joined};
 use g7_model::{Document, Said};
 
 use crate::file::File;
@@ -14,6 +14,11 @@ use crate::file::File;
 pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
     let stand = standing(&file.source.document);
     Ok(g7_edit::apply_placed(&file.as_edited(), gesture, &stand)?)
+}
+
+/// The steps that a deletion would join if it heals.
+pub fn joins(file: &File, ids: &[ItemId]) -> Result<Vec<Joined>, Said> {
+    Ok(g7_edit::joins(&file.as_edited(), ids)?)
 }
 
 /// A part of a chart as text, with the places of its symbols.

@@ -485,6 +485,13 @@ pub struct Layout {
     pub at: Place,
 }
 
+impl Layout {
+    /// True if a chart counts as drawn by hand: more than half of its steps and transitions have a place.
+    pub fn is_by_hand(placed: usize, symbols: usize) -> bool {
+        placed * 2 > symbols
+    }
+}
+
 /// One symbol's place on the drawing.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlaceAt {

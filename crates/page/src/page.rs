@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use g7_edit::{Gesture, ItemId};
+use g7_edit::{Gesture, ItemId, Joined};
 use g7_ide::gestures;
 use g7_ide::{File, Texts};
 use g7_model::{Language, Said, say};
@@ -272,6 +272,10 @@ impl Answers for Page {
 
     fn redo(&mut self, file: String) -> Result<Edited, Said> {
         self.travel(&file, false)
+    }
+
+    fn joins(&mut self, file: String, ids: Vec<ItemId>) -> Result<Vec<Joined>, Said> {
+        gestures::joins(self.file(&file)?, &ids)
     }
 
     fn copy(&mut self, file: String, ids: Vec<ItemId>) -> Result<Text, Said> {

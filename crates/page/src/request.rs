@@ -103,6 +103,9 @@ requests! {
 
     fn redo(file: String) -> Edited;
 
+    /// The steps that would be joined if these parts were deleted and the chart healed.
+    fn joins(file: String, ids: Vec<g7_edit::ItemId>) -> Vec<g7_edit::Joined>;
+
     /// Copies symbols as text, to be pasted elsewhere.
     fn copy(file: String, ids: Vec<g7_edit::ItemId>) -> Text;
 

@@ -1,7 +1,7 @@
 // All commands of the drawing. The keys, the context menu, the buttons at a selected symbol and the
 // list of shortcuts all use this table.
 import type { IconName } from '../lib/Icon.svelte';
-import type { Key } from '../lib/i18n';
+import { t, type Key } from '../lib/i18n';
 import { runs } from '../lib/runs.svelte';
 import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';
@@ -9,12 +9,16 @@ import { editor } from './editor.svelte';
 export interface Command {
   id: string;
   title: Key;
+  /** Its title for the present selection, where that says more. */
+  name?: () => string;
   /** The keys as shown to the user; the first one is compared with the pressed key. */
   keys?: string[];
   icon?: IconName | 'or' | 'and' | 'next' | 'action';
   /** True if it is shown beside a selected symbol. */
   near?: boolean;
   when: () => boolean;
+  /** False if a menu has no row for it, because another command does the same now. */
+  listed?: () => boolean;
   /** For a command that is on or off: true if it is on. */
   checked?: () => boolean;
   run: () => unknown;
@@ -215,6 +219,7 @@ export const commands: Command[] = [
     keys: ['Delete', 'Backspace'],
     near: true,
     icon: 'trash',
+    name: () => (editor.joined === '' ? t('cmd.deleteOnly') : t('cmd.deleteJoin', { what: editor.joined })),
     when: some,
     run: () => editor.remove(true),
   },
@@ -223,6 +228,7 @@ export const commands: Command[] = [
     title: 'cmd.deleteOnly',
     keys: ['Shift+Delete'],
     when: some,
+    listed: () => editor.joined !== '',
     run: () => editor.remove(false),
   },
   { id: 'all', title: 'cmd.all', keys: ['Ctrl+A'], when: () => true, run: () => editor.selectAll() },
@@ -263,6 +269,9 @@ export const commands: Command[] = [
   },
   { id: 'print', title: 'app.print', keys: ['Ctrl+P'], when: () => true, run: () => window.print() },
 ];
+
+/** The title of a command now, in the language of the page. */
+export const commandName = (command: Command): string => command.name?.() ?? t(command.title);
 
 /** The name of a key as the table writes it. */
 export function keyName(e: KeyboardEvent): string {

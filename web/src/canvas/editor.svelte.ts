@@ -2,7 +2,7 @@
 // panels beside it (palette, properties) use the same state.
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
-import { actionOf, kindOf } from '../lib/ids';
+import { actionOf, kindOf, leavingPart } from '../lib/ids';
 import { page } from '../lib/page';
 import type { Box, Edited, Gesture } from '../lib/protocol';
 import type { Placed as Item } from '../lib/redrawn';
@@ -34,6 +34,8 @@ export type Tool = 'step' | 'transition' | 'macro' | 'enclosing' | 'or' | 'and' 
 
 interface Camera {
   fit(): void;
+  /** Moves the view by px of the screen. */
+  panBy(dx: number, dy: number): void;
   zoomBy(factor: number): void;
   /** Makes a box of the plane visible. */
   reveal(box: Box, centre?: boolean): void;
@@ -55,11 +57,14 @@ class Editor {
   /** The id of the symbol or link that a drop would affect. */
   target: string | null = $state(null);
   moving: { ids: ReadonlySet<string>; dx: number; dy: number } | null = $state.raw(null);
-  linking: { from: string; x: number; y: number } | null = $state.raw(null);
+  /** A link that is being drawn: from this symbol, or to it, to or from a place of the plane. */
+  linking: { from: string; x: number; y: number; back?: boolean } | null = $state.raw(null);
   /** The dragged tool, with its place on the screen. */
   tool: { what: Tool; x: number; y: number } | null = $state.raw(null);
   /** A text that screen readers read out. */
   said = $state('');
+  /** The steps that healing would join if the selected symbols were deleted, such as `4 → 6`. */
+  joined = $state('');
   camera: Camera | null = null;
   /** Number of gestures whose results have not arrived. */
   #under = $state(0);
@@ -123,7 +128,9 @@ class Editor {
     for (const sentence of edited.told ?? []) shell.say(sentence);
     // A selection made during the gesture is kept.
     const free = shell.selection === selection;
-    const made = free ? (edited.select ?? []) : [];
+    // A link that is drawn in two parts is selected by the one at its start.
+    const part = (id: string) => (this.scene?.byId.has(id) ? id : leavingPart(id));
+    const made = free ? (edited.select ?? []).map(part) : [];
     if (made.length > 0) {
       shell.select(made);
       const item = this.scene?.byId.get(made[0] ?? '');
@@ -186,6 +193,13 @@ class Editor {
     if (other && this.file) shell.jump(this.file, other);
   }
 
+  /** Selects a symbol of this chart and makes it visible. */
+  goTo(id: string): void {
+    shell.select([id]);
+    const item = this.scene?.byId.get(id);
+    if (item) this.camera?.reveal(item.area);
+  }
+
   copy(): Promise<string> {
     return this.#during(() => this.#copy());
   }
@@ -210,6 +224,20 @@ class Editor {
     const fragment = text?.trim() ? text : this.#copied;
     if (!fragment || this.chart === null) return;
     await this.apply({ g: 'paste', chart: this.chart, text: fragment, ...(at ? { at } : {}) });
+  }
+
+  /** Finds out what healing would join. */
+  async findJoined(): Promise<void> {
+    const { file } = this;
+    const ids = this.selected.map((i) => i.id);
+    const look = file?.look;
+    const nodes = this.selected.some((i) => i.part === 'step' || i.part === 'transition');
+    // A refusal says that the selection is of a text before this one.
+    const found = file && nodes ? await page.call({ do: 'joins', file: file.name, ids }).catch(() => []) : [];
+    if (this.file !== file || file?.look !== look || this.selected.map((i) => i.id).join() !== ids.join()) return;
+    const side = (names: string[]) => (names.length === 1 ? (names[0] ?? '') : `(${names.join(', ')})`);
+    const all = found.map((j) => `${side(j.before)} → ${side(j.behind)}`);
+    this.joined = all.slice(0, 3).join(', ') + (all.length > 3 ? ', …' : '');
   }
 
   remove(heal = true): Promise<Edited | undefined> {

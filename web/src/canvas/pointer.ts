@@ -2,11 +2,16 @@
 // the view itself.
 import type { Placed as Item } from '../lib/redrawn';
 import { actionOf } from '../lib/ids';
+import type { LinkEnd } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';
 
 /** Movements smaller than this are clicks, in px. */
 const CLICK = 4;
+/** So near to an edge of the sheet a drag moves the view, in px. */
+const EDGE = 36;
+/** How fast it does so at the edge itself, in px per ms. */
+const FAST = 0.9;
 /** Symbols move in steps of half a unit. */
 const SNAP = 5;
 
@@ -14,7 +19,8 @@ type Doing =
   | { what: 'press'; item: Item | null; add: boolean }
   | { what: 'move'; ids: Set<string> }
   | { what: 'mark'; item: Item | null; add: boolean }
-  | { what: 'link'; from: string };
+  | { what: 'link'; from: string }
+  | { what: 'relink'; link: string; end: LinkEnd; part: Item['part'] };
 
 /** True if a symbol can be dragged; links only follow their symbols. */
 function held(item: Item | null): boolean {
@@ -24,6 +30,10 @@ function held(item: Item | null): boolean {
 export class Pointer {
   #doing: Doing | null = null;
   #at = { x: 0, y: 0 };
+  /** The pressed place of the plane, which stays when the view moves. */
+  #from: [number, number] = [0, 0];
+  /** The last place of the pointer while it drags near an edge, and when the view moved there. */
+  #edge: { e: PointerEvent; at: number } | null = null;
   #place: (e: { clientX: number; clientY: number }) => [number, number];
   #root: HTMLElement;
   #touch = false;
@@ -64,17 +74,35 @@ export class Pointer {
     if (e.button === 1) this.#root.setPointerCapture(e.pointerId);
     if (e.button !== 0 || !e.isPrimary) return;
     const item = this.under(e);
-    [this.#at.x, this.#at.y] = this.#place(e);
+    this.#press(e);
     const add = e.shiftKey || e.ctrlKey || e.metaKey;
     this.#doing = held(item) || !e.shiftKey ? { what: 'press', item, add } : { what: 'mark', item, add };
   }
 
+  #press(e: PointerEvent): void {
+    [this.#at.x, this.#at.y] = this.#place(e);
+    this.#from = editor.toPlane(this.#at.x, this.#at.y);
+  }
+
   /** Starts a link at a symbol. */
   link(e: PointerEvent, from: string): void {
-    [this.#at.x, this.#at.y] = this.#place(e);
+    this.#press(e);
     this.#doing = { what: 'link', from };
-    const [x, y] = editor.toPlane(this.#at.x, this.#at.y);
+    const [x, y] = this.#from;
     editor.linking = { from, x, y };
+    this.#root.setPointerCapture(e.pointerId);
+  }
+
+  /** Takes an end of a link; the other one stays. */
+  relink(e: PointerEvent, link: Item, end: LinkEnd): void {
+    const [from, to] = link.ends ?? ['', ''];
+    const [own, other] = end === 'from' ? [from, to] : [to, from];
+    const part = editor.scene?.byId.get(own)?.part;
+    if (!part) return;
+    this.#press(e);
+    this.#doing = { what: 'relink', link: link.id, end, part };
+    const [x, y] = this.#from;
+    editor.linking = { from: other, x, y, back: end === 'from' };
     this.#root.setPointerCapture(e.pointerId);
   }
 
@@ -95,23 +123,50 @@ export class Pointer {
       }
       this.#root.setPointerCapture(e.pointerId);
     }
-    const k = editor.view.k;
+    this.#drag(e);
+    this.#atEdge(e);
+  }
+
+  /** Shows what is dragged at the place of the pointer. */
+  #drag(e: PointerEvent): void {
     const now = this.#doing;
+    const [px, py] = editor.toPlane(...this.#place(e));
+    const [fx, fy] = this.#from;
     if (now?.what === 'move') {
-      const snap = (n: number) => Math.round(n / k / SNAP) * SNAP;
-      editor.moving = { ids: now.ids, dx: snap(dx), dy: snap(dy) };
+      const snap = (n: number) => Math.round(n / SNAP) * SNAP;
+      editor.moving = { ids: now.ids, dx: snap(px - fx), dy: snap(py - fy) };
     } else if (now?.what === 'mark') {
-      const [ax, ay] = editor.toPlane(Math.min(x, this.#at.x), Math.min(y, this.#at.y));
-      editor.marquee = [ax, ay, Math.abs(dx) / k, Math.abs(dy) / k];
+      editor.marquee = [Math.min(px, fx), Math.min(py, fy), Math.abs(px - fx), Math.abs(py - fy)];
       this.#root.setPointerCapture(e.pointerId);
-    } else if (now?.what === 'link') {
-      const [px, py] = editor.toPlane(x, y);
-      editor.linking = { from: now.from, x: px, y: py };
+    } else if ((now?.what === 'link' || now?.what === 'relink') && editor.linking) {
+      editor.linking = { ...editor.linking, x: px, y: py };
       const over = this.under(e);
-      const fits = over && over.id !== now.from && (over.part === 'step' || over.part === 'transition');
-      editor.target = fits ? over.id : null;
+      const fits = (item: Item) => (now.what === 'link' ? item.id !== now.from && (item.part === 'step' || item.part === 'transition') : item.part === now.part);
+      editor.target = over && fits(over) ? over.id : null;
     }
   }
+
+  /** Near an edge of the sheet the view goes on by itself, and what is dragged with it. */
+  #atEdge(e: PointerEvent): void {
+    const waiting = this.#edge !== null;
+    this.#edge = { e, at: this.#edge?.at ?? performance.now() };
+    if (!waiting) requestAnimationFrame(this.#onward);
+  }
+
+  #onward = (now: number): void => {
+    const edge = this.#edge;
+    this.#edge = null;
+    if (!edge || !this.#doing || this.#doing.what === 'press') return;
+    const speed = (at: number, size: number) => Math.max(0, Math.min(1, (EDGE - at) / EDGE)) - Math.max(0, Math.min(1, (EDGE - size + at) / EDGE));
+    const [x, y] = this.#place(edge.e);
+    const [right, down] = [speed(x, editor.width), speed(y, editor.height)];
+    if (right === 0 && down === 0) return;
+    const by = FAST * Math.max(0, Math.min(50, now - edge.at));
+    editor.camera?.panBy(right * by, down * by);
+    this.#drag(edge.e);
+    this.#edge = { e: edge.e, at: now };
+    requestAnimationFrame(this.#onward);
+  };
 
   /** Starts dragging the selection or the pressed symbol; neighbours come along unless `alone` is
    * true. */
@@ -135,6 +190,7 @@ export class Pointer {
     if (doing.what === 'press') this.#click(doing.item, doing.add);
     else if (doing.what === 'move') void this.#drop(doing.ids);
     else if (doing.what === 'mark') this.#mark(doing.item);
+    else if (doing.what === 'relink') this.#take(doing.link, doing.end);
     else this.#join(doing.from, e);
   }
 
@@ -180,6 +236,13 @@ export class Pointer {
     }
     const found = editor.scene?.within(box).map((i) => i.id) ?? [];
     shell.select([...shell.selection, ...found]);
+  }
+
+  #take(link: string, end: LinkEnd): void {
+    const to = editor.target;
+    editor.linking = null;
+    editor.target = null;
+    if (to) void editor.apply({ g: 'relink', link, end, to });
   }
 
   #join(from: string, e: PointerEvent): void {

@@ -214,7 +214,7 @@ function cellOf(layer: Layer, x: number, y: number): number {
 }
 
 /** True if screen readers name a symbol. */
-const spoken = (item: Item): boolean => item.part !== 'link' && item.part !== 'text';
+export const spoken = (item: Item): boolean => item.part !== 'link' && item.part !== 'text';
 
 function near(item: Item, name: string): string {
   const id = escaped(item.id);

@@ -37,3 +37,6 @@ export function actionId(step: string, index: number): string {
 export function transitionNumber(id: string): number {
   return Number(id.split('/')[2]);
 }
+
+/** The id of the part at the start of a link, for a link that is drawn in two parts. */
+export const leavingPart = (link: string): string => (kindOf(link) === 'l' ? `${link.replace('/l/', '/c/')}/leaving` : link);

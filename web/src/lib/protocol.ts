@@ -241,6 +241,15 @@ export type Gesture =
     to: ItemId;
   }
   | {
+    g: 'relink';
+    /** The link, or one end of a broken one. */
+    link: ItemId;
+    /** The end that moves. */
+    end: LinkEnd;
+    /** The step or transition at which it ends then. */
+    to: ItemId;
+  }
+  | {
     g: 'insert';
     /** The link. */
     link: ItemId;
@@ -487,6 +496,14 @@ export type Item = {
 /** The id of a part of a chart. */
 export type ItemId = string;
 
+/** Steps that healing joins: those that stand before and behind a transition that it changes. */
+export type Joined = {
+  /** The preceding steps. */
+  before: Array<string>;
+  /** The succeeding steps. */
+  behind: Array<string>;
+};
+
 /** A run of symbols that look the same and stand in the same order in the other drawing. */
 export type Kept = {
   /** The number of the first of them in the other drawing. */
@@ -509,6 +526,9 @@ export type Lanes = {
   /** For each signal its edges: instant (ms), number, value as text. */
   lanes: Array<Array<[number, number, string]>>;
 };
+
+/** The two ends of a link. */
+export type LinkEnd = 'from' | 'to';
 
 export type LogicForm = {
   tongue: Tongue;
@@ -904,6 +924,8 @@ export interface Requests {
   edit: { file: string; gesture: Gesture };
   undo: { file: string };
   redo: { file: string };
+  /** The steps that would be joined if these parts were deleted and the chart healed. */
+  joins: { file: string; ids: Array<ItemId> };
   /** Copies symbols as text, to be pasted elsewhere. */
   copy: { file: string; ids: Array<ItemId> };
   /** Merges two changes of one text. */
@@ -1027,6 +1049,7 @@ export interface Answers {
   edit: Edited;
   undo: Edited;
   redo: Edited;
+  joins: Array<Joined>;
   copy: Text;
   merge: Merged;
   format: Edited;

@@ -5,6 +5,9 @@ use std::collections::HashMap;
 
 use g7_model::{Chart, Step, StepKind};
 
+use crate::layout::adrift::{Gap, gaps};
+use crate::layout::lists::Lists;
+
 /// Steps and transitions as nodes (steps first), and links in the order of the text.
 #[derive(Debug)]
 pub(crate) struct Graph {
@@ -20,38 +23,34 @@ pub(crate) struct Graph {
     pub(crate) into: Lists,
     /// True for each link that leads back up, that is, closes a loop.
     pub(crate) back: Vec<bool>,
+    /// Number of steps and of transitions that the chart has. What comes behind them among the steps and among
+    /// the transitions is missing: it takes room and is not drawn.
+    pub(crate) real: (usize, usize),
 }
 
-/// A list of numbers for each node, stored as one array.
-#[derive(Debug, Default)]
-pub(crate) struct Lists {
-    starts: Vec<u32>,
-    all: Vec<u32>,
-}
-
-impl Lists {
-    #[inline(never)]
-    fn new(count: usize, of: impl Iterator<Item = u32> + Clone) -> Lists {
-        let mut starts = vec![0u32; count + 1];
-        of.clone().for_each(|n| starts[n as usize + 1] += 1);
-        for k in 0..count {
-            starts[k + 1] += starts[k];
+/// Puts missing symbols into the gaps: a transition behind steps, a step and a transition behind a transition.
+/// Returns the number of steps and of nodes with them.
+#[inline(never)]
+fn bridge((steps, transitions): (usize, usize), gaps: &[Gap], links: &mut Vec<(u32, u32)>) -> (usize, usize) {
+    let is_step = |n: u32| (n as usize) < steps;
+    let behind_transition = |g: &&Gap| g.from.iter().any(|n| !is_step(*n));
+    let more = gaps.iter().filter(behind_transition).count() as u32;
+    let number = |n: u32| if is_step(n) { n } else { n + more };
+    links.iter_mut().for_each(|(from, to)| (*from, *to) = (number(*from), number(*to)));
+    let mut step = steps as u32;
+    let mut node = (steps + transitions) as u32 + more;
+    for gap in gaps {
+        if behind_transition(&gap) {
+            links.extend(gap.from.iter().map(|n| (number(*n), step)));
+            links.push((step, node));
+            step += 1;
+        } else {
+            links.extend(gap.from.iter().map(|n| (*n, node)));
         }
-        let mut next = starts.clone();
-        let mut all = vec![0; starts[count] as usize];
-        for (item, n) in (0..).zip(of) {
-            let at = &mut next[n as usize];
-            all[*at as usize] = item;
-            *at += 1;
-        }
-        Lists { starts, all }
+        links.extend(gap.to.iter().map(|n| (node, *n)));
+        node += 1;
     }
-
-    /// The list of one node.
-    pub(crate) fn of(&self, n: u32) -> &[u32] {
-        let (from, to) = (self.starts[n as usize] as usize, self.starts[n as usize + 1] as usize);
-        &self.all[from..to]
-    }
+    (step as usize, node as usize)
 }
 
 impl Graph {
@@ -79,11 +78,13 @@ impl Graph {
             links.extend(t.to.iter().filter_map(|f| Some((node, number(f, side)?))));
             node += 1;
         }
-        let nodes = node as usize;
+        let real = (steps.len(), node as usize - steps.len());
+        let gaps = gaps(&steps, node as usize, &links);
+        let (count, nodes) = bridge(real, &gaps, &mut links);
         let out = Lists::new(nodes, links.iter().map(|l| l.0));
         let into = Lists::new(nodes, links.iter().map(|l| l.1));
         let back = vec![false; links.len()];
-        let mut graph = Graph { steps: steps.len(), nodes, links, out, into, back };
+        let mut graph = Graph { steps: count, nodes, links, out, into, back, real };
         graph.find_loops(&steps);
         graph
     }

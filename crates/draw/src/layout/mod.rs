@@ -3,7 +3,7 @@
 //! # Where this sits
 //!
 //! ```text
-//! Chart -> graph -> reduce -> tree -> shape, beside -> place -> route -> Placement
+//! Chart -> adrift, graph -> reduce -> tree -> shape, beside -> place -> route -> Placement
 //!                                                        \-> moved -/  (layout section)
 //! ```
 //!
@@ -21,9 +21,11 @@
 //!   overlaps another and no link runs through one.
 //! - Each link of the chart is in `links` once or in `connectors` twice.
 
+mod adrift;
 mod beside;
 mod graph;
 mod lines;
+mod lists;
 mod moved;
 mod place;
 mod profile;
@@ -35,9 +37,9 @@ mod shape;
 mod tree;
 mod way;
 
-use g7_model::{Chart, PlaceAt};
+use g7_model::{Chart, PlaceAt, Step, StepKind};
 
-use crate::{Placement, Sizes};
+use crate::{End, Placement, Point, Sizes};
 
 /// Number of rounds in which the links that could not be drawn are broken; the round after them
 /// breaks all that remain.
@@ -53,8 +55,9 @@ pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
         let tree = reduce::reduce(&graph, &broken);
         let shapes = shape::shapes(&graph, &tree, sizes);
         if shapes.failed.is_empty() {
-            let auto = route::route(&shapes, &place::places(&shapes));
-            return moved::moved(&graph, sizes, auto, &moved::given(chart, &graph, places));
+            let auto = from_first(route::route(&shapes, &place::places(&shapes)), chart);
+            let placement = moved::moved(&graph, sizes, auto, &moved::given(chart, &graph, places));
+            return without_gaps(placement, graph.real);
         }
         tries += 1;
         shapes.failed.iter().for_each(|l| broken[*l as usize] = true);
@@ -62,4 +65,39 @@ pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
             broken.iter_mut().zip(&graph.back).for_each(|(b, back)| *b |= back);
         }
     }
+}
+
+/// Moves a placement so that the step at which the chart begins stands at the origin: what is added or taken away
+/// at its left or above it does not move it.
+fn from_first(mut p: Placement, chart: &Chart) -> Placement {
+    let begins = |s: &Step| s.initial || s.kind == StepKind::Entry;
+    let Some(&by) = p.steps.get(chart.steps().position(begins).unwrap_or(0)) else { return p };
+    let moved = |at: &mut Point| (at.x, at.y) = (at.x - by.x, at.y - by.y);
+    p.steps.iter_mut().chain(&mut p.transitions).for_each(moved);
+    p.bars.iter_mut().for_each(|b| moved(&mut b.at));
+    for link in &mut p.links {
+        link.points.iter_mut().for_each(moved);
+        link.arrows.iter_mut().for_each(|a| moved(&mut a.0));
+    }
+    for c in &mut p.connectors {
+        moved(&mut c.at);
+        c.points.iter_mut().for_each(moved);
+        (c.text.x, c.text.y) = (c.text.x - by.x, c.text.y - by.y);
+    }
+    (p.area.x, p.area.y) = (p.area.x - by.x, p.area.y - by.y);
+    p
+}
+
+/// Takes out the symbols that only hold room, with everything that leads to them.
+fn without_gaps(mut p: Placement, (steps, transitions): (usize, usize)) -> Placement {
+    p.steps.truncate(steps);
+    p.transitions.truncate(transitions);
+    let real = |end: End| match end {
+        End::Step(n) => (n as usize) < steps,
+        End::Transition(n) => (n as usize) < transitions,
+    };
+    p.links.retain(|l| real(l.from) && real(l.to));
+    p.connectors.retain(|c| real(c.from) && real(c.to));
+    p.bars.retain(|b| real(End::Transition(b.transition)));
+    p
 }

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, PlaceAt};
+use g7_model::{Chart, Layout, PlaceAt};
 
 use crate::layout::graph::Graph;
 use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
@@ -57,7 +57,7 @@ pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Opti
     let mut at: Vec<Point> = auto.steps.iter().chain(&auto.transitions).copied().collect();
     // If most places are given, a person drew the chart: a new symbol then keeps its automatic
     // offset from a neighbour.
-    let by_hand = count * 2 > graph.nodes;
+    let by_hand = Layout::is_by_hand(count, graph.real.0 + graph.real.1);
     if by_hand {
         beside_neighbours(graph, &mut at, given);
     }

@@ -116,7 +116,16 @@ fn usual_charts_are_drawn_without_broken_links() {
 
 #[test]
 fn parts_without_a_link_stand_beside_one_another() {
-    let p = drawn("initial step 1 step 2 step 3 step 4 1 -> 2 when TRUE 3 -> 4 when TRUE");
+    let p = drawn("initial step 1 step 2 initial step 3 step 4 1 -> 2 when TRUE 3 -> 4 when TRUE");
     assert_eq!(p.steps[0].y, p.steps[2].y);
     assert!(p.steps[0].x + 1000 < p.steps[2].x);
+}
+
+#[test]
+fn a_part_without_a_way_in_stands_behind_the_sequence_that_it_follows_in_the_text() {
+    let whole = "initial step 1 step 2 step 3 step 4 1 -> 2 when TRUE 3 -> 4 when TRUE";
+    let (apart, joined) = (drawn(whole), drawn(&format!("{whole} 2 -> 3 when TRUE")));
+    assert_eq!(apart.steps, joined.steps);
+    assert_eq!(apart.transitions, joined.transitions[..2]);
+    assert!(apart.links.iter().all(|l| l.from != End::Step(1)), "nothing is drawn in the gap");
 }

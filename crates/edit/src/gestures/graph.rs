@@ -50,17 +50,21 @@ pub(crate) fn may_arrive(step: &Step) -> Result<(), Refusal> {
 /// Adds a step to the preceding (or succeeding) steps of a transition, unless it is among them.
 #[inline(never)]
 pub(crate) fn add(d: &mut Draft<'_>, chart: &str, at: Span, step: &str, to: bool) -> Result<(), Refusal> {
+    vacant(d.transition(chart, at)?, step, to)?;
     let name = d.new_name(step);
     let t = d.transition_mut(chart, at)?;
     let list = if to { &mut t.to } else { &mut t.from };
-    if has(list, step) {
-        return refuse(match to {
-            true => say!("step `{step}` stands behind this transition already"),
-            false => say!("step `{step}` stands before this transition already"),
-        });
-    }
     list.push(name);
     Ok(())
+}
+
+/// Refuses a step that stands on this side of a transition already.
+pub(crate) fn vacant(t: &Transition, step: &str, to: bool) -> Result<(), Refusal> {
+    match (has(if to { &t.to } else { &t.from }, step), to) {
+        (false, _) => Ok(()),
+        (true, true) => refuse(say!("step `{step}` stands behind this transition already")),
+        (true, false) => refuse(say!("step `{step}` stands before this transition already")),
+    }
 }
 
 /// Replaces a step in a list by other names; no name is listed twice.

@@ -10,7 +10,7 @@ use g7_compile::{Definition, references};
 use g7_model::{Chart, ChartItem, FileId, Item, Name, Span, Step, StepKind, Transition, say};
 use g7_syntax::{Part, print_part, show_name, show_path_name, show_step_name};
 
-use super::delete::Chosen;
+use super::chosen::Chosen;
 use super::graph::replace;
 use super::insert::macro_name;
 use crate::change::{Refusal, refuse};

@@ -3,7 +3,7 @@
 use g7_model::{Span, StepKind, say};
 
 use super::build::fresh_step;
-use super::delete::Chosen;
+use super::chosen::Chosen;
 use super::graph::{add, put_beside, put_step, replace};
 use super::table::add_expansion;
 use crate::change::{Refusal, refuse};

@@ -1,10 +1,13 @@
 //! The gestures: each changes the draft.
 
 mod build;
+mod chosen;
 mod delete;
 mod fields;
 mod graph;
 mod group;
+mod heal;
+mod hold;
 mod insert;
 mod join;
 mod layout_section;
@@ -12,11 +15,15 @@ mod nodes;
 mod notes;
 mod paste;
 mod places;
+mod relink;
 mod rename;
 mod settings;
 mod table;
 mod unread;
 
+pub use heal::Joined;
+pub(crate) use heal::joins;
+pub(crate) use hold::hold;
 pub use rename::Renaming;
 pub(crate) use rename::{rename, rename_at};
 pub(crate) use table::renamed_row;
@@ -35,6 +42,7 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Next { id } => build::next(d, id),
         Gesture::Before { id } => build::before(d, id),
         Gesture::Connect { from, to } => join::connect(d, from, to),
+        Gesture::Relink { link, end, to } => relink::relink(d, link, *end, to),
         Gesture::Insert { link, what } => insert::insert(d, link, *what),
         Gesture::Branch { id, how } => build::branch(d, id, *how),
         Gesture::Converge { ids, how, to } => join::converge(d, ids, *how, to.as_ref()),

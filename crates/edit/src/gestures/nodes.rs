@@ -1,19 +1,19 @@
-//! The steps and transitions that the ids of a gesture name.
+//! The steps, transitions and links that the ids of a gesture name.
 //!
 //! A gesture begins here: its ids come from the drawing and may be out of date, so an id is never
 //! used before the draft has been found to contain its part.
 
-use g7_model::say;
+use g7_model::{Span, say};
 
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
-use crate::id::{ItemId, Part};
+use crate::id::{End, ItemId, Part};
 
 /// The step or transition that an id names.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Node {
     Step(String),
-    Transition(g7_model::Span),
+    Transition(Span),
 }
 
 /// The step (also for an id of one of its actions) or the transition that an id names, if it
@@ -45,4 +45,19 @@ pub(crate) fn one_chart(ids: &[ItemId]) -> Result<&str, Refusal> {
         return refuse(say!("the chosen things are of several charts; this is done in one"));
     }
     Ok(&first.chart)
+}
+
+/// The chart, step and transition of a link; the flag is true if the link leaves the step.
+pub(crate) fn link(
+    d: &Draft<'_>,
+    chart: &str,
+    a: &End,
+    b: &End,
+) -> Result<(String, String, Span, bool), Refusal> {
+    let (step, number, leaving) = match (a, b) {
+        (End::Step(s), End::Transition(t)) => (s, *t, true),
+        (End::Transition(t), End::Step(s)) => (s, *t, false),
+        _ => return refuse(say!("a link joins a step and a transition")),
+    };
+    Ok((chart.to_owned(), step.clone(), d.number(chart, number)?, leaving))
 }
