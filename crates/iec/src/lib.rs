@@ -14,6 +14,8 @@
 //! - `st` reads and prints expressions, statements and declarations of Structured Text.
 //! - `il` and `ld` translate instructions and rungs into statements, and print statements as these.
 //! - `standard` rewrites a document in the forms that the standard has.
+//! - `enumerations` makes types of the enumerations of a file that is read, with the help of `variables`, which knows the
+//!   enumeration of each variable.
 //! - `scopes` finds the meaning of names in a document.
 //! - `signs` turns functions that do what an operator does into that operator.
 //! - `sfc` reads and writes charts as text, `plcopen` as PLCopen TC6 or IEC 61131-10 XML.
@@ -29,6 +31,7 @@
 #![forbid(unsafe_code)]
 
 pub mod constant;
+mod enumerations;
 pub mod il;
 pub mod ld;
 pub mod nodes;
@@ -40,6 +43,7 @@ pub mod signs;
 pub mod st;
 mod standard;
 mod terms;
+mod variables;
 pub mod words;
 pub mod xml;
 

@@ -143,6 +143,14 @@ impl Bench {
         variable.value(&self.state)[0].cast_signed()
     }
 
+    /// The value of a variable as users see it: of an enumeration, its name.
+    pub(crate) fn shown(&self, name: &str) -> String {
+        let variable = self.compiled.symbols.variable(name).unwrap_or_else(|| panic!("no variable {name}"));
+        let number = variable.value(&self.state)[0].cast_signed();
+        let value = variable.held.as_ref().and_then(|held| held.name_of(number.into()));
+        value.map_or_else(|| number.to_string(), str::to_owned)
+    }
+
     /// The active steps.
     pub(crate) fn active(&self) -> Vec<String> {
         self.state.active().map(|s| self.compiled.symbols.step_name(s).to_string()).collect()

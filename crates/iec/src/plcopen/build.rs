@@ -18,6 +18,7 @@ use super::read::{Pou, Project};
 use super::tree::{self, Language, head, name_of};
 use super::types::Shapes;
 use super::units::{self, Meaning, Unit};
+use crate::enumerations;
 use crate::nodes::{self, Taken};
 use crate::report::Report;
 use crate::st;
@@ -66,6 +67,7 @@ pub(super) fn document<'a>(project: &'a Project<'a>, root: tree::Xml<'a>, report
     let mut document = Document { items, notes: report.take_notes() };
     st::settle(&mut document);
     inputs::settle(&mut document, report);
+    enumerations::settle(&mut document, report);
     document
 }
 

@@ -123,7 +123,10 @@ impl<'a> Shapes<'a> {
         if let Some(known) = self.types.get(&name.text) {
             return Some(known.clone());
         }
-        let shape = self.of(kid(node, "baseType").unwrap_or(node), name, report)?;
+        let before = self.types.declaring.replace(name.clone());
+        let shape = self.of(kid(node, "baseType").unwrap_or(node), name, report);
+        self.types.declaring = before;
+        let shape = shape?;
         let shape = match kid(node, "initialValue").and_then(|v| self.initial(v, &shape, report)) {
             Some(init) => shape.starting_with(init).unwrap_or_else(|shape| {
                 not_carried(node, report);
@@ -159,14 +162,8 @@ impl<'a> Shapes<'a> {
                 Some(Shape::Struct(name))
             }
             "enum" => {
-                let shape = enumeration(inner, report);
-                // `add` keeps the values of a type with a name.
-                if let Shape::Enum(values, _) = &shape
-                    && !self.nodes.contains_key(&of.text.to_uppercase())
-                {
-                    self.types.values.extend(values.iter().cloned());
-                }
-                Some(shape)
+                let (ty, values) = enumeration(inner, report);
+                Some(self.types.enumeration(of, ty, values, report))
             }
             "subrangeSigned" | "subrangeUnsigned" => self.subrange(inner, of, report),
             "pointer" => {
@@ -399,9 +396,14 @@ fn repetitions(value: Xml, report: &mut Report) -> u32 {
     })
 }
 
-fn enumeration(inner: Xml, report: &mut Report) -> Shape {
+/// The type of the numbers of an enumeration, and its values.
+fn enumeration(inner: Xml, report: &mut Report) -> (Type, st::Values) {
     let base = kid(inner, "baseType").and_then(described);
-    if let Some(base) = base.filter(|b| !matches!(plain(*b), Known::Type(Type::Int))) {
+    let ty = match base.map(plain) {
+        Some(Known::Type(ty)) if st::is_base(ty) => Some(ty),
+        _ => None,
+    };
+    if let Some(base) = base.filter(|_| ty.is_none()) {
         report.element(
             &codes::DIFFERENT,
             "baseType",
@@ -416,7 +418,7 @@ fn enumeration(inner: Xml, report: &mut Report) -> Shape {
         let number = number.map(|t| st::expression(&t.text, &|r| t.place(&r), report));
         found.push((name, number));
     }
-    st::enumeration(found, report)
+    (ty.unwrap_or(Type::Int), found)
 }
 
 fn values(node: Xml<'_>) -> impl Iterator<Item = Xml<'_>> {

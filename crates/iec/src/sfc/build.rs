@@ -5,12 +5,13 @@ use std::collections::{HashMap, HashSet};
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Composed, Document, Expr,
-    ExprKind, Function, Item, Literal, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName, Step,
-    StepKind, Stmt, Target, Transition as Written, Type, VarDecl, VarKind, say,
+    ExprKind, Function, Item, Limits, Literal, Name, NamedAction, Nanos, Param, Problem, Profile,
+    ProfileName, Step, StepKind, Stmt, Target, Transition as Written, VarDecl, VarKind, say,
 };
 
 use super::blocks::{foreign, local, lost_actions, no_type};
 use super::unit::{Association, Part, Source, Transition, Unit, UnitKind};
+use crate::enumerations;
 use crate::nodes;
 use crate::report::Report;
 use crate::st::{Section, Variable, settle};
@@ -57,6 +58,7 @@ pub(super) fn document(mut source: Source, length: usize, report: &mut Report) -
     let mut document = Document { items, notes: Vec::new() };
     settle(&mut document);
     numbers_as_conditions(&mut document, report);
+    enumerations::settle(&mut document, report);
     document
 }
 
@@ -392,7 +394,7 @@ fn known_type(source: &Source, variable: &Variable, report: &mut Report) -> bool
 /// The function of a unit; None if it has no result.
 pub(crate) fn function(source: &Source, unit: &Unit, report: &mut Report) -> Option<Function> {
     let given = &unit.result.as_ref()?.decl;
-    if given.limits.is_some() {
+    if matches!(given.limits.as_deref(), Some(Limits::Range(..))) {
         let what = say!("the limits of the result of `{}` are not checked", unit.name.text);
         report.put(Problem::new(&codes::LEFT_OUT, given.at.0, what));
     }
@@ -431,14 +433,11 @@ fn upper(variable: &Variable) -> String {
     variable.decl.names.first().map_or(String::new(), |n| n.text.to_uppercase())
 }
 
-/// The values of enumerations as constants, the structures and the function blocks.
+/// The enumerations, the structures and the function blocks.
 pub(super) fn types(source: &Source) -> impl Iterator<Item = Item> + use<'_> {
-    let values = source.types.values.iter().map(|(name, number)| {
-        let init = Some(nodes::int(*number, name.at.0));
-        VarDecl { init, ..VarDecl::new(VarKind::Const, vec![name.clone()], Type::Int, name.at) }
-    });
+    let enumerations = source.types.enumerations.iter().cloned();
     let composed = source.types.structures.iter().chain(&source.blocks).cloned();
-    values.map(Item::Var).chain(composed.map(Item::Composed))
+    enumerations.map(Item::Type).chain(composed.map(Item::Composed))
 }
 
 /// Some tools allow a number as a condition: it is true unless it is 0.

@@ -116,8 +116,8 @@ pub(crate) fn rewrite(source: &mut Source, report: &mut Report) {
     inouts::expand(source, report);
 }
 
-/// Takes the function blocks that are used out of the list of units. Gives the values of enumerations as constants, the
-/// structures, and these function blocks.
+/// Takes the function blocks that are used out of the list of units. Gives the enumerations, the structures, and these
+/// function blocks.
 pub(crate) fn types(source: &mut Source, report: &mut Report) -> Vec<Item> {
     blocks::expand(source, report);
     build::types(source).collect()

@@ -1,7 +1,7 @@
 //! Declarations of variables.
 
 use g7_model::codes;
-use g7_model::{Expr, Name, Problem, Type, VarDecl, VarKind, say};
+use g7_model::{Expr, Limits, Name, Problem, Type, VarDecl, VarKind, say};
 
 use super::initial::declared;
 use super::lex::Kind;
@@ -224,7 +224,7 @@ pub(crate) fn fit(decl: &mut VarDecl) -> Option<Problem> {
             decl.init = Some(Expr::zero(decl.ty, decl.at));
         }
     }
-    decl.limits.take_if(|_| decl.kind == VarKind::Input)?;
+    decl.limits.take_if(|l| decl.kind == VarKind::Input && matches!(**l, Limits::Range(..)))?;
     let name = decl.names.first()?;
     let what = say!("the limits of the input `{}` are not checked", name.text);
     Some(Problem::new(&codes::LEFT_OUT, decl.at.0, what))

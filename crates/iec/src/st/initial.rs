@@ -147,7 +147,10 @@ impl Shape {
         match (self, init) {
             (Shape::Simple(ty, _), Initial::One(init)) => Ok(Shape::Simple(ty, Some(init))),
             (Shape::Range(ty, limits, _), Initial::One(init)) => Ok(Shape::Range(ty, limits, Some(init))),
-            (Shape::Enum(values, _), Initial::One(init)) => Ok(Shape::Enum(values, Some(init))),
+            (Shape::Enum(own, _), Initial::One(init)) => {
+                let init = own.initial(init);
+                Ok(Shape::Enum(own, Some(init)))
+            }
             (other, _) => Err(other),
         }
     }
@@ -163,11 +166,10 @@ pub(crate) fn declared(
     let dimensions = if let Shape::Array(bounds, _) = shape { Some(bounds) } else { None };
     let (ty, of, default) = match shape.element() {
         Shape::Simple(ty, default) | Shape::Range(ty, _, default) => (*ty, None, default.clone()),
-        Shape::Enum(values, default) => {
+        Shape::Enum(own, default) => {
             // An array without a list starts with zeros, so a first value of 0 needs no list.
-            let first = values.first().filter(|(_, number)| dimensions.is_none() || *number != 0);
-            let first = first.map(|(value, _)| path(&value.text, name.at));
-            (Type::Int, None, default.clone().or(first))
+            let first = own.first().filter(|_| dimensions.is_none() || own.least != Some(0));
+            (own.ty, None, default.clone().or(first))
         }
         Shape::Struct(of) | Shape::Unknown(of) => (Type::Bool, Some(Box::new(of.clone())), None),
         Shape::Array(..) => (Type::Bool, None, None),
@@ -183,6 +185,10 @@ pub(crate) fn declared(
         // Tools differ in what one value means for an array.
         (Some(_), Some(_)) => None,
     };
+    let value = match shape.element() {
+        Shape::Enum(own, _) => value.map(|e| own.initial(e)),
+        _ => value,
+    };
     let bad = matches!(init, Some(Initial::One(e)) if e.kind == ExprKind::Bad);
     if init.is_some() && value.is_none() && !bad {
         let what =
@@ -191,6 +197,7 @@ pub(crate) fn declared(
     }
     let limits = match shape.element() {
         Shape::Range(_, limits, _) => Some(Box::new(Limits::Range(limits.0.clone(), limits.1.clone()))),
+        Shape::Enum(own, _) => Some(Box::new(Limits::Of(own.name.clone()))),
         _ => None,
     };
     let names = vec![name.clone()];
@@ -218,8 +225,4 @@ fn filled(mut list: Expr, bounds: &[(Expr, Expr)], default: Option<Expr>) -> Exp
         values.extend(count.checked_sub(given).filter(|rest| *rest > 0).map(|rest| (rest, default)));
     }
     list
-}
-
-fn path(name: &str, at: Place) -> Expr {
-    Expr { kind: ExprKind::Path(Path { names: vec![Name { text: name.into(), at }] }), at }
 }

@@ -1,7 +1,7 @@
 //! Reads constants in the text: type words in any case, and forms without a counterpart.
 
 use g7_model::codes;
-use g7_model::{Expr, ExprKind, Literal, Moment, Name, Nanos, Path, Said, say};
+use g7_model::{Expr, ExprKind, Literal, Moment, Name, Nanos, Said, say};
 
 use super::lex::{Kind, Token};
 use super::parse::Parser;
@@ -49,8 +49,7 @@ impl Parser<'_> {
                 Some(ty) => self.read(token, constant::typed(&format!("{ty}#{value}")), text),
                 None => {
                     let at = self.span_of(token);
-                    let names = vec![Name::new(value, at)];
-                    Expr { kind: ExprKind::Path(Path { names }), at: at.into() }
+                    super::shape::typed(prefix, &Name::new(value, at))
                 }
             },
         }

@@ -45,9 +45,9 @@ pub use parse::Places;
 pub(crate) use parse::{Parser, foreign};
 pub use print::Writer;
 pub use settle::settle;
-pub(crate) use shape::{Shape, Types, enumeration, no_array};
+pub(crate) use shape::{Shape, Types, Values, no_array};
 pub use types::elementary;
-pub(crate) use types::text;
+pub(crate) use types::{is_base, text};
 
 /// Reads statements of Structured Text; the text must end behind them.
 pub fn statements(text: &str, place: Places, report: &mut Report) -> Vec<Stmt> {

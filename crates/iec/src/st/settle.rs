@@ -1,9 +1,12 @@
 //! Gives each name the spelling of its declaration.
 //!
+//! A value of an enumeration with its type, `Mode#Auto` or `Mode.Auto`, becomes the one name `Mode#Auto`; without such an
+//! enumeration the type before the `#` is dropped.
+//!
 //! IEC 61131-3 ignores case, a .g7 document does not. An element of a structure or array can be one variable with a
 //! name such as `a[1]` or `s.x`, or a member of a type of the file.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use g7_model::{
     Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Item, Limits,
@@ -32,6 +35,12 @@ pub fn settle(document: &mut Document) {
             _ => {}
         }
     }
+    // Variables and functions come first: they hide the bare names of values.
+    document.items.iter().for_each(|i| {
+        if let Item::Type(t) = i {
+            file.values(t)
+        }
+    });
     let mut steps = Spelling::default();
     for chart in document.charts() {
         chart.steps().for_each(|s| steps.declare(&s.name, None));
@@ -41,7 +50,7 @@ pub fn settle(document: &mut Document) {
     for item in &mut document.items {
         let mut settler = Settler { names: vec![&file], steps: vec![&steps], types: &types };
         match item {
-            Item::Var(v) => settler.declaration(v),
+            Item::Var(v) | Item::Type(v) => settler.declaration(v),
             Item::Action(a) => settler.body(&mut a.body),
             Item::Section(s) => settler.block(&mut s.body),
             Item::Function(f) => {
@@ -87,6 +96,8 @@ struct Entry {
 #[derive(Debug, Default)]
 struct Spelling {
     names: HashMap<String, Entry>,
+    /// The enumerations, as they stand before their values: `MODE#`.
+    enumerations: HashSet<String>,
 }
 
 impl Spelling {
@@ -96,6 +107,16 @@ impl Spelling {
 
     fn variables(&mut self, decl: &VarDecl) {
         decl.names.iter().for_each(|n| self.declare(n, decl.of.as_deref()));
+    }
+
+    /// The values of an enumeration, alone and with their type.
+    fn values(&mut self, decl: &VarDecl) {
+        let Some(of) = decl.names.first().filter(|_| !decl.values().is_empty()) else { return };
+        self.enumerations.insert(format!("{}#", upper(of)));
+        for (value, _) in decl.values() {
+            self.declare(&Name { text: format!("{}#{}", of.text, value.text).into(), at: value.at }, None);
+            self.declare(value, None);
+        }
     }
 
     fn locals(&mut self, block: &Block) {
@@ -176,6 +197,7 @@ impl<'a> Settler<'a> {
         if self.step_path(path) {
             return None;
         }
+        self.untyped(path);
         for from in 0..path.names.len().min(3) {
             let rest = path.names.get(from..).unwrap_or(&[]);
             let first = rest.first()?;
@@ -185,7 +207,11 @@ impl<'a> Settler<'a> {
             });
             let (plain, index) = bare(&first.text);
             let array = || find(&self.names, &plain.to_uppercase()).map(|entry| (1, entry, index));
-            let Some((n, entry, index)) = joined.or_else(array) else { continue };
+            let value = || {
+                let typed = format!("{}#{}", upper(first), upper(rest.get(1)?));
+                find(&self.names, &typed).map(|entry| (2, entry, ""))
+            };
+            let Some((n, entry, index)) = joined.or_else(array).or_else(value) else { continue };
             if from > 0 && self.is_hidden(&plain.to_uppercase()) {
                 return None;
             }
@@ -196,6 +222,17 @@ impl<'a> Settler<'a> {
             return of;
         }
         None
+    }
+
+    /// Drops the type before the `#` of a value that no enumeration has.
+    fn untyped(&self, path: &mut Path) {
+        let [name] = path.names.as_mut_slice() else { return };
+        let Some((of, value)) = name.text.split_once('#') else { return };
+        let of = format!("{}#", of.to_uppercase());
+        let known = self.names.last().is_some_and(|file| file.enumerations.contains(&of));
+        if !known {
+            name.text = value.into();
+        }
     }
 
     /// True if a variable of the file cannot be named without a prefix, because one of the unit has its name.

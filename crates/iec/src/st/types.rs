@@ -6,7 +6,7 @@ use g7_model::{Composed, Expr, Name, Place, Type, VarDecl, say};
 use super::initial::{Initial, declared};
 use super::lex::Kind;
 use super::parse::Parser;
-use super::shape::{Shape, Types, enumeration, no_array};
+use super::shape::{Shape, Types, no_array};
 
 /// An elementary type or standard function block by its name in capitals.
 pub fn elementary(upper: &str) -> Option<Type> {
@@ -19,6 +19,11 @@ pub fn elementary(upper: &str) -> Option<Type> {
 /// The type of a text of so many characters. One of a WSTRING has up to three bytes in UTF-8 (decision 68).
 pub(crate) fn text(length: u16, wide: bool) -> Type {
     Type::String(if wide { length.saturating_mul(3) } else { length })
+}
+
+/// True for a type that the numbers of an enumeration can have.
+pub(crate) fn is_base(ty: Type) -> bool {
+    ty.is_integer() || ty.is_bits() && ty != Type::Bool
 }
 
 impl Parser<'_> {
@@ -39,8 +44,10 @@ impl Parser<'_> {
                 self.bump();
             }
             self.expect(":");
+            types.declaring = Some(name.clone());
             let mut shape =
                 if self.at_word("STRUCT") { self.structure(&name, types) } else { self.shape(&name, types) };
+            types.declaring = None;
             let start = self.token().start;
             if self.eat(":=") {
                 let init = self.initial();
@@ -96,16 +103,19 @@ impl Parser<'_> {
             _ => {}
         }
         if self.at("(") {
-            return self.enumeration();
+            return self.enumeration(of, None, types);
         }
         let Some(name) = self.name(say!("a type")) else { return Shape::Simple(Type::Bool, None) };
         match elementary(&upper) {
             Some(Type::String(_)) => Shape::Simple(text(self.length(), upper == "WSTRING"), None),
             // Values with a type: `INT (Off := 0, Hand := 2)`; `INT (Least..7)` is a subrange.
-            Some(Type::Int)
-                if self.at("(") && self.ahead(1).kind == Kind::Word && !self.ahead_is(2, "..") =>
+            Some(ty)
+                if is_base(ty)
+                    && self.at("(")
+                    && self.ahead(1).kind == Kind::Word
+                    && !self.ahead_is(2, "..") =>
             {
-                self.enumeration()
+                self.enumeration(of, Some(ty), types)
             }
             // `R_EDGE` and `F_EDGE` can stand behind BOOL; `declaration` reads them.
             Some(ty) => match self.subrange() {
@@ -149,8 +159,8 @@ impl Parser<'_> {
         length.unwrap_or(80)
     }
 
-    /// `(Off, Auto := 5, Hand)`.
-    fn enumeration(&mut self) -> Shape {
+    /// `(Off, Auto := 5, Hand)`. CODESYS and TwinCAT write the type of the numbers behind it.
+    fn enumeration(&mut self, of: &Name, base: Option<Type>, types: &mut Types) -> Shape {
         self.bump();
         let mut values = Vec::new();
         while let Some(name) = self.name(say!("a value of the enumeration")) {
@@ -161,7 +171,11 @@ impl Parser<'_> {
             }
         }
         self.expect(")");
-        enumeration(values, self.report)
+        let behind = elementary(&self.word()).filter(|ty| base.is_none() && is_base(*ty));
+        if behind.is_some() {
+            self.bump();
+        }
+        types.enumeration(of, base.or(behind).unwrap_or(Type::Int), values, self.report)
     }
 
     fn array(&mut self, of: &Name, types: &mut Types) -> Shape {

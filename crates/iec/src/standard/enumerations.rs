@@ -5,19 +5,20 @@
 //! compared for equality, assigned, given to parameters of the same type and chosen from by CASE, each time beside a value
 //! or a variable of the same type (IEC 61131-3:2003, 2.3.3.1). Otherwise its variables stay INT, and its values numbers.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use g7_model::visit::Visitor as Reader;
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    BinaryOp, Block, Body, ChartItem, ChartKind, Document, Expr, ExprKind, Item, Limits, Name, Order, Path,
-    Problem, Span, Stmt, StmtKind, Type, VarDecl, VarKind, named::numbered,
+    BinaryOp, Block, Body, ChartItem, Document, Expr, ExprKind, Item, Limits, Name, Order, Path, Problem,
+    Span, Stmt, StmtKind, Type, VarDecl, VarKind, named::numbered,
 };
 
 use super::form::Form;
 use super::identifiers::Names;
 use crate::nodes;
 use crate::report::renamed;
+use crate::variables::{Home, Variables};
 
 /// The enumerations that stay, by their names in the document.
 #[derive(Default)]
@@ -166,119 +167,6 @@ fn counts(document: &Document) -> BTreeMap<Box<str>, i128> {
     enumerations(document).filter_map(one).collect()
 }
 
-/// Where a name is declared: in the file, in a chart, or in a function block.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-enum Home {
-    File,
-    Chart(Box<str>),
-    Block(Box<str>),
-}
-
-/// A declaration, as far as it matters here.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-struct Declared {
-    /// The enumeration of a variable.
-    of: Option<Box<str>>,
-    /// The function block of an instance.
-    block: Option<Box<str>>,
-}
-
-/// All variables of a document.
-#[derive(Default)]
-struct Variables {
-    all: HashMap<(Home, Box<str>), Declared>,
-    /// Those of charts, by their names alone: an expansion names variables of its program. Those that several charts
-    /// declare otherwise are left out.
-    of_charts: HashMap<Box<str>, Declared>,
-    /// The enumerations of variables that are left out there.
-    unclear: BTreeSet<Box<str>>,
-}
-
-impl Variables {
-    fn of(document: &Document) -> Variables {
-        let mut made = Variables::default();
-        let parts = document.charts().any(|c| c.kind != ChartKind::Chart);
-        for item in &document.items {
-            match item {
-                Item::Var(v) => made.add(&Home::File, v),
-                Item::Chart(c) => {
-                    for v in c.vars() {
-                        made.add(&Home::Chart(c.name.text.clone()), v);
-                        if parts {
-                            made.add_of_chart(v);
-                        }
-                    }
-                }
-                Item::Composed(c) => {
-                    let home = Home::Block(c.name.text.clone());
-                    c.members.iter().chain(&c.inouts).for_each(|v| made.add(&home, v));
-                }
-                _ => {}
-            }
-        }
-        made
-    }
-
-    fn add(&mut self, home: &Home, decl: &VarDecl) {
-        let declared = declared(decl);
-        self.all.extend(decl.names.iter().map(|n| ((home.clone(), n.text.clone()), declared.clone())));
-    }
-
-    fn add_of_chart(&mut self, decl: &VarDecl) {
-        let declared = declared(decl);
-        for name in &decl.names {
-            let known = self.of_charts.entry(name.text.clone()).or_insert_with(|| declared.clone());
-            if *known != declared {
-                self.unclear.extend([known.of.take(), declared.of.clone()].into_iter().flatten());
-                known.block = None;
-            }
-        }
-    }
-
-    fn find(&self, home: &Home, name: &str) -> Option<&Declared> {
-        let within = |home: &Home| self.all.get(&(home.clone(), name.into()));
-        match home {
-            Home::Block(_) | Home::File => within(home),
-            Home::Chart(_) => {
-                within(home).or_else(|| within(&Home::File)).or_else(|| self.of_charts.get(name))
-            }
-        }
-    }
-
-    /// The enumeration of a variable that a path names in a chart, a function block or the file.
-    fn of_path(&self, home: &Home, path: &Path) -> Option<&str> {
-        let names: Vec<&str> = path.names.iter().map(|n| &*n.text).collect();
-        let found = match names.as_slice() {
-            [name] => self.find(home, name),
-            [first, second] => match self.find(home, first) {
-                Some(instance) => self.find(&Home::Block(instance.block.clone()?), second),
-                None => self.find(&Home::Chart((*first).into()), second),
-            },
-            [unit, instance, member] => {
-                let block = self.find(&Home::Chart((*unit).into()), instance)?.block.clone()?;
-                self.find(&Home::Block(block), member)
-            }
-            _ => None,
-        };
-        found?.of.as_deref()
-    }
-
-    /// The enumeration of a parameter of the function block that a path calls.
-    fn of_parameter(&self, home: &Home, called: &Path, name: &str) -> Option<&str> {
-        let instance = match called.names.as_slice() {
-            [instance] => self.find(home, &instance.text),
-            [unit, instance] => self.find(&Home::Chart(unit.text.clone()), &instance.text),
-            _ => None,
-        };
-        self.find(&Home::Block(instance?.block.clone()?), name)?.of.as_deref()
-    }
-}
-
-fn declared(decl: &VarDecl) -> Declared {
-    let of = if let Some(Limits::Of(of)) = decl.limits.as_deref() { Some(of.text.clone()) } else { None };
-    Declared { of, block: decl.of.as_ref().map(|of| of.text.clone()) }
-}
-
 /// Counts all uses of variables of enumerations. With `made`, it replaces the numbers beside them by the names of values.
 struct Looking<'a> {
     variables: &'a Variables,
@@ -387,10 +275,9 @@ impl<'a> Looking<'a> {
 
     /// The enumerations that can stay.
     fn staying(&self) -> BTreeSet<Box<str>> {
-        let all = || self.variables.all.iter().filter_map(|((_, name), d)| Some((name, d.of.as_deref()?)));
-        let used: BTreeSet<&str> = all().map(|(_, of)| of).collect();
-        let hidden: BTreeSet<&str> =
-            all().filter(|(n, _)| self.locals.contains(*n)).map(|(_, of)| of).collect();
+        let used: BTreeSet<&str> = self.variables.enumerated().map(|(_, of)| of).collect();
+        let local = self.variables.enumerated().filter(|(n, _)| self.locals.contains(*n));
+        let hidden: BTreeSet<&str> = local.map(|(_, of)| of).collect();
         let stays = |name: &str| {
             used.contains(name)
                 && !hidden.contains(name)

@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// Most values of an enumeration.
-const MOST: usize = 1 << 12;
+pub const MOST: usize = 1 << 12;
 
 /// Puts each declared type in the place of its name, in all declarations of variables. Also returns the problems of the
 /// declared types.

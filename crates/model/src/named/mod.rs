@@ -22,7 +22,7 @@ mod held;
 mod scopes;
 mod walk;
 
-pub use declare::{declared, numbered};
+pub use declare::{MOST as MOST_VALUES, declared, numbered};
 pub use held::{Checker, held};
 
 use crate::{Expr, Limits, Name, VarDecl};

@@ -31,10 +31,8 @@ fn types_functions_and_blocks_are_those_of_the_text() {
         "types.xml",
         r#"
 profile iec61131
-const Off : INT := 0
-const Hand : INT := 5
-const Auto : INT := 6
-struct Line { Axes : ARRAY[1..2] OF Axis  State : INT := Off }
+type Mode : (Off, Hand := 5, Auto)
+struct Line { Axes : ARRAY[1..2] OF Axis  State : Mode }
 struct Axis { Position : REAL := 0.5 "in mm"  Load : INT(0..100) := 50 }
 function block Count {
   input On : BOOL
@@ -63,7 +61,7 @@ function block Split {
 var Go : BOOL
 var Plant : Line := (Axes := [(Position := 2.0), (Load := 7)], State := Hand)
 var Levels : ARRAY[0..2] OF INT(0..100) := [1, 2(3)]
-var Now : INT := Off
+var Now : Mode
 var Counts : ARRAY[1..2] OF Count
 var Total : INT
 var Rest : INT
@@ -97,8 +95,7 @@ fn charts_and_ladders_use_types_functions_and_blocks() {
         "station.xml",
         r"
 profile iec61131
-const Off : INT := 0
-const Auto : INT := 1
+type Mode : (Off, Auto)
 struct Part { Weight : INT  Good : BOOL }
 function block Scale {
   input Load : INT
@@ -123,7 +120,7 @@ function block Rest {
   }
 }
 var Force : INT
-var Now : INT := Off
+var Now : Mode
 var Heavy : BOOL
 var Rows : ARRAY[1..2] OF BOOL
 pre { Rows[2] := Heavy }
@@ -153,14 +150,12 @@ fn types_of_iec_61131_10_are_read() {
         "types10.xml",
         r"
 profile iec61131
-const Off : INT := 0
-const Hand : INT := 1
-const Low : INT := 3
-const High : INT := 9
+type Mode : (Off, Hand)
+type Rank : (Low := 3, High := 9)
 struct Axis { Position : REAL := 0.5  Loads : ARRAY[1..2] OF INT(0..100) }
 var One : Axis
-var Now : INT := Hand
-var Grade : INT := Low
+var Now : Mode := Hand
+var Grade : Rank
 pre { IF Now = Hand THEN One.Loads[2] := 5  Grade := High END_IF }
 ",
     );
@@ -206,9 +201,9 @@ fn what_a_type_cannot_be_is_told() {
         // A dimension without bounds, a subrange without limits.
         ("", "<array><dimension lower='1'/><baseType><INT/></baseType></array>", "G0604"),
         ("", "<subrangeSigned><baseType><INT/></baseType></subrangeSigned>", "G0604"),
-        // The values are of a type other than INT.
+        // The values are of a type that has no whole numbers.
         (
-            "<dataType name='A'><baseType><enum><values><value name='x'/></values><baseType><UDINT/></baseType></enum></baseType></dataType>",
+            "<dataType name='A'><baseType><enum><values><value name='x'/></values><baseType><REAL/></baseType></enum></baseType></dataType>",
             "<derived name='A'/>",
             "G0614",
         ),

@@ -58,16 +58,14 @@ fn structures_arrays_enumerations_and_functions() {
     same(
         &document,
         "profile iec61131
-         const Red : INT := 0
-         const Green : INT := 1
-         const Blue : INT := 2
+         type Colour : (Red, Green, Blue) := Green
          struct Pair {
            a : INT
            b : INT
          }
          input go : BOOL
          output done : BOOL
-         var c : INT := Green
+         var c : Colour
          var p : Pair := (a := 1, b := 2)
          var v : ARRAY[1..3] OF INT := [5, 2(7)]
          function Twice(n : INT) : INT { Twice := n * 2 }

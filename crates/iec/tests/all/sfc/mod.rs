@@ -9,6 +9,7 @@
 
 mod carried;
 mod corpus;
+mod enumerations;
 mod functions;
 mod hostile;
 mod instances;

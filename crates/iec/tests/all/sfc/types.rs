@@ -283,7 +283,7 @@ fn an_array_of_instances_with_a_chart_is_a_chart_for_each() {
 }
 
 #[test]
-fn values_of_enumerations_have_their_numbers() {
+fn an_enumeration_becomes_a_type() {
     let text = carried(
         "TYPE
            Mode : (Off, Auto := 5, Hand) := Hand;
@@ -300,14 +300,11 @@ fn values_of_enumerations_have_their_numbers() {
          END_PROGRAM",
     );
     for part in [
-        "const Off : INT := 0",
-        "const Auto : INT := 5",
-        "const Hand : INT := 6",
-        "const None : INT := 1",
-        "const Jam : INT := -3",
-        "var m : INT := Hand",
-        "var f : INT := None",
-        "var all : ARRAY[1..2] OF INT := [2(None)]",
+        "type Mode : (Off, Auto := 5, Hand) := Hand\n",
+        "type Fault : (None := 1, Jam := -3)\n",
+        "var m : Mode\n",
+        "var f : Fault\n",
+        "var all : ARRAY[1..2] OF Fault\n",
         "A -> B when m = Auto",
         "B -> A when m = Off",
         "Off:\n        f := Jam",

@@ -1,0 +1,155 @@
+//! The enumerations and the composed types of the variables of a document, by the paths that name them.
+//!
+//! ```text
+//! sfc, plcopen -> enumerations -> here
+//! standard (enumerations)      -> here
+//! ```
+//!
+//! A variable of an enumeration has [`Limits::Of`]; one of a structure or function block of the file names it in `of`.
+
+use std::collections::{BTreeSet, HashMap};
+
+use g7_model::{ChartKind, Document, Item, Limits, Name, Path, VarDecl, VarKind, bare};
+
+/// Where a name is declared: in the file, in a chart, or in a structure or function block.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(crate) enum Home {
+    File,
+    Chart(Box<str>),
+    Block(Box<str>),
+}
+
+/// A declaration, as far as it matters here.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Declared {
+    /// The enumeration of a variable.
+    pub(crate) of: Option<Box<str>>,
+    /// The structure of a variable, or the function block of an instance.
+    pub(crate) block: Option<Box<str>>,
+    pub(crate) array: bool,
+    pub(crate) inout: bool,
+}
+
+/// All variables of a document.
+#[derive(Default)]
+pub(crate) struct Variables {
+    all: HashMap<(Home, Box<str>), Declared>,
+    /// The inputs and in-outs of each function block, in the order of the text, in which a call can name none.
+    inputs: HashMap<Box<str>, Vec<Box<str>>>,
+    /// Those of charts, by their names alone: an expansion names variables of its program. Those that several charts
+    /// declare otherwise are left out.
+    of_charts: HashMap<Box<str>, Declared>,
+    /// The enumerations of variables that are left out there.
+    pub(crate) unclear: BTreeSet<Box<str>>,
+}
+
+impl Variables {
+    pub(crate) fn of(document: &Document) -> Variables {
+        let mut made = Variables::default();
+        let parts = document.charts().any(|c| c.kind != ChartKind::Chart);
+        for item in &document.items {
+            match item {
+                Item::Var(v) => made.add(&Home::File, v, false),
+                Item::Chart(c) => {
+                    for v in c.vars() {
+                        made.add(&Home::Chart(c.name.text.clone()), v, false);
+                        if parts {
+                            made.add_of_chart(v);
+                        }
+                    }
+                }
+                Item::Composed(c) => {
+                    let home = Home::Block(c.name.text.clone());
+                    c.members.iter().for_each(|v| made.add(&home, v, false));
+                    c.inouts.iter().for_each(|v| made.add(&home, v, true));
+                    let given = c.members.iter().filter(|m| m.kind == VarKind::Input).chain(&c.inouts);
+                    let mut given: Vec<&Name> = given.flat_map(|v| &v.names).collect();
+                    given.sort_by_key(|n| n.at.0.start);
+                    let given = given.into_iter().map(|n| n.text.clone()).collect();
+                    made.inputs.insert(c.name.text.clone(), given);
+                }
+                _ => {}
+            }
+        }
+        made
+    }
+
+    fn add(&mut self, home: &Home, decl: &VarDecl, inout: bool) {
+        let declared = Declared { inout, ..declared(decl) };
+        self.all.extend(decl.names.iter().map(|n| ((home.clone(), n.text.clone()), declared.clone())));
+    }
+
+    fn add_of_chart(&mut self, decl: &VarDecl) {
+        let declared = declared(decl);
+        for name in &decl.names {
+            let known = self.of_charts.entry(name.text.clone()).or_insert_with(|| declared.clone());
+            if *known != declared {
+                self.unclear.extend([known.of.take(), declared.of.clone()].into_iter().flatten());
+                known.block = None;
+            }
+        }
+    }
+
+    /// The names of the variables that have an enumeration, and that.
+    pub(crate) fn enumerated(&self) -> impl Iterator<Item = (&str, &str)> {
+        self.all.iter().filter_map(|((_, name), d)| Some((&**name, d.of.as_deref()?)))
+    }
+
+    fn find(&self, home: &Home, name: &str) -> Option<&Declared> {
+        let within = |home: &Home, name: &str| self.all.get(&(home.clone(), name.into()));
+        // The index of an element, or its place, stands in the name: `d[i].open`, `m[].speed`.
+        let exact = |home: &Home| within(home, name).or_else(|| within(home, bare(name).0));
+        match home {
+            Home::File | Home::Block(_) => exact(home),
+            Home::Chart(_) => exact(home).or_else(|| exact(&Home::File)).or_else(|| self.of_charts.get(name)),
+        }
+    }
+
+    /// The variable that names of a path name in a chart, a function block or the file.
+    pub(crate) fn declared(&self, home: &Home, names: &[Name]) -> Option<&Declared> {
+        let (first, rest) = names.split_first()?;
+        // The body of a function block names variables of the file, too.
+        let near = self.find(home, &first.text).or_else(|| self.find(&Home::File, &first.text));
+        let near = near.and_then(|found| self.behind(found, rest));
+        near.or_else(|| {
+            let (second, rest) = rest.split_first()?;
+            self.behind(self.find(&Home::Chart(first.text.clone()), &second.text)?, rest)
+        })
+    }
+
+    /// The member that names behind a variable name.
+    fn behind<'v>(&'v self, variable: &'v Declared, names: &[Name]) -> Option<&'v Declared> {
+        names
+            .iter()
+            .try_fold(variable, |found, name| self.find(&Home::Block(found.block.clone()?), &name.text))
+    }
+
+    /// The enumeration of a variable that a path names in a chart, a function block or the file.
+    pub(crate) fn of_path(&self, home: &Home, path: &Path) -> Option<&str> {
+        self.declared(home, &path.names)?.of.as_deref()
+    }
+
+    /// The input or in-out at a place of the call of a function block.
+    pub(crate) fn input(&self, home: &Home, called: &Path, place: usize) -> Option<&Declared> {
+        let block = self.declared(home, &called.names)?.block.clone()?;
+        let name = self.inputs.get(&block)?.get(place)?;
+        self.find(&Home::Block(block), name)
+    }
+
+    /// The parameter of the function block that a path calls.
+    pub(crate) fn parameter(&self, home: &Home, called: &Path, name: &str) -> Option<&Declared> {
+        let block = self.declared(home, &called.names)?.block.clone()?;
+        self.find(&Home::Block(block), name)
+    }
+
+    /// The enumeration of a parameter of the function block that a path calls.
+    pub(crate) fn of_parameter(&self, home: &Home, called: &Path, name: &str) -> Option<&str> {
+        self.parameter(home, called, name)?.of.as_deref()
+    }
+}
+
+fn declared(decl: &VarDecl) -> Declared {
+    let of = if let Some(Limits::Of(of)) = decl.limits.as_deref() { Some(of.text.clone()) } else { None };
+    let block = decl.of.as_ref().map(|of| of.text.clone());
+    Declared { of, block, array: decl.array.is_some(), inout: false }
+}
