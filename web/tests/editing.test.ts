@@ -91,7 +91,7 @@ async function click(page: Page, id: string, count = 1): Promise<void> {
   await page.mouse.click(x, y, { clickCount: count });
 }
 
-const field = (page: Page) => page.locator('.inplace input');
+const field = (page: Page) => page.locator('.inplace > input');
 const words = (text: string) => text.replace(/\s+/g, ' ');
 
 test('a chart of ten steps is drawn without the mouse', async () => {
