@@ -286,8 +286,9 @@ test('a name that is taken is refused with a reason, and nothing is changed', as
   await page.keyboard.press('F2');
   await field(page).fill('1');
   await page.keyboard.press('Enter');
-  await page.locator('.notice.error').waitFor();
-  assert.match(await page.locator('.notice.error').innerText(), /1/);
+  const refusal = page.locator('.inplace').getByRole('alert');
+  await refusal.waitFor();
+  assert.match(await refusal.innerText(), /1/);
   await page.keyboard.press('Escape');
   assert.equal(await textOf(page), LOOP);
   await page.context().close();

@@ -226,12 +226,15 @@ impl<'d> Walk<'d> {
             }
             // `+` and `*` join Booleans as well, and a time is multiplied by a number.
             Operands::Arithmetic => {
-                let usual = want.or(Some(Type::Int));
                 let scaled = matches!(op, BinaryOp::Mul | BinaryOp::Div);
+                let beside = |other: Option<Type>| match (other, want) {
+                    (Some(other), Some(want)) if want.is_number() => Some(joined(other, want)),
+                    (other, want) => other.or(want).or(Some(Type::Int)),
+                };
                 match (left, right) {
                     (_, Some(r)) if scaled && want == Some(Type::Time) && r.is_number() => (want, None),
                     (Some(Type::Time), _) if scaled => (left, None),
-                    _ => (right.or(usual), left.or(usual)),
+                    _ => (beside(right), beside(left)),
                 }
             }
         };
