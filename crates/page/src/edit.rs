@@ -59,9 +59,6 @@ fn make(name: &str, file: &mut File, mut edit: Edit) -> Result<Edited, Said> {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 pub(crate) struct Foreseen {
-    /// The reason why it would be refused.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    refused: Option<String>,
     /// The text that was probably meant by one that cannot be read.
     #[serde(skip_serializing_if = "Option::is_none")]
     meant: Option<String>,
@@ -74,13 +71,9 @@ pub(crate) fn foresee(file: &File, gesture: &Gesture) -> Foreseen {
     match g7_ide::gestures::foresee(file, gesture) {
         Ok(after) => {
             let undeclared = names(&after.document, &after.undeclared);
-            Foreseen { refused: None, meant: None, undeclared }
+            Foreseen { meant: None, undeclared }
         }
-        Err(why) => Foreseen {
-            refused: Some(why.in_language(file.language)),
-            meant: g7_edit::meant(gesture),
-            undeclared: Vec::new(),
-        },
+        Err(_) => Foreseen { meant: g7_edit::meant(gesture), undeclared: Vec::new() },
     }
 }
 

@@ -1,4 +1,4 @@
-// What the text of a field would do if it were applied: the names that nothing declares, and the text that was meant
+// The effect that the text of a field would have: the names that nothing declares, and the text that was meant
 // where it cannot be read. The checker is asked while the user types, and only the newest answer counts.
 import type { OpenFile } from '../lib/files.svelte';
 import { page } from '../lib/page';

@@ -192,8 +192,6 @@ export type Fix = {
 
 /** The effect that a gesture would have. */
 export type Foreseen = {
-  /** The reason why it would be refused. */
-  refused?: string;
   /** The text that was probably meant by one that cannot be read. */
   meant?: string;
   /** The names in its symbol that nothing would declare. */

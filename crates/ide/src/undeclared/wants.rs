@@ -78,7 +78,7 @@ impl Facts {
 }
 
 /// The uses of some names in a document.
-pub(super) fn wanted<'d>(document: &'d Document, names: &BTreeSet<&str>) -> BTreeMap<String, Facts> {
+pub(super) fn wanted(document: &Document, names: &BTreeSet<&str>) -> BTreeMap<String, Facts> {
     let mut walk = Walk {
         types: declared(document),
         found: names.iter().map(|n| ((*n).to_owned(), Facts::default())).collect(),
@@ -474,7 +474,7 @@ impl<'d> Visitor<'d> for Walk<'d> {
                 self.read(&r.value, None);
                 r.when.iter().for_each(|e| self.read(e, Some(Type::Bool)));
             }
-            // What a picture shows and where parts begin says nothing about the type of a name.
+            // A picture and the beginnings of parts say nothing about the type of a name.
             PlantItem::Const { .. }
             | PlantItem::State(_)
             | PlantItem::Parts(_)
