@@ -37,7 +37,7 @@ for (const theme of ['light', 'dark'] as const) {
     assert.deepEqual(await axe(page), [], 'the menu');
     await page.keyboard.press('Escape');
     await page.keyboard.press('F2');
-    await page.locator('.inplace input').waitFor();
+    await page.locator('.inplace > input').waitFor();
     assert.deepEqual(await axe(page), [], 'a field');
     await page.keyboard.press('Escape');
     await page.keyboard.press('?');

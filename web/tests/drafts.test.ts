@@ -45,7 +45,7 @@ async function rename(page: Page, to: string, down = 3): Promise<void> {
   await page.locator('.sheet').focus();
   for (let n = 0; n < down; n++) await page.keyboard.press('ArrowDown');
   await page.keyboard.press('F2');
-  await page.locator('.inplace input').fill(to);
+  await page.locator('.inplace > input').fill(to);
   await page.keyboard.press('Enter');
   await step(page, to).waitFor({ state: 'attached' });
 }

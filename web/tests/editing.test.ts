@@ -91,7 +91,7 @@ async function click(page: Page, id: string, count = 1): Promise<void> {
   await page.mouse.click(x, y, { clickCount: count });
 }
 
-const field = (page: Page) => page.locator('.inplace input');
+const field = (page: Page) => page.locator('.inplace > input');
 const words = (text: string) => text.replace(/\s+/g, ' ');
 
 test('a chart of ten steps is drawn without the mouse', async () => {
@@ -286,8 +286,9 @@ test('a name that is taken is refused with a reason, and nothing is changed', as
   await page.keyboard.press('F2');
   await field(page).fill('1');
   await page.keyboard.press('Enter');
-  await page.locator('.notice.error').waitFor();
-  assert.match(await page.locator('.notice.error').innerText(), /1/);
+  const refusal = page.locator('.inplace').getByRole('alert');
+  await refusal.waitFor();
+  assert.match(await refusal.innerText(), /1/);
   await page.keyboard.press('Escape');
   assert.equal(await textOf(page), LOOP);
   await page.context().close();

@@ -45,7 +45,7 @@ test('the code of the selected step is marked, and follows the chart', async () 
   for (const line of await code.locator('.marked').allInnerTexts()) assert.match(line, /STEP_2/);
   await page.locator('.sheet').focus();
   await page.keyboard.press('F2');
-  await page.locator('.inplace input').fill('Fill');
+  await page.locator('.inplace > input').fill('Fill');
   await page.keyboard.press('Enter');
   await code.locator('.marked', { hasText: 'STEP_FILL' }).first().waitFor();
   // Code for a PLC is marked too, whatever its names for the steps are.

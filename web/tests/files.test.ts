@@ -50,7 +50,7 @@ async function rename(page: Page, to: string): Promise<void> {
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('ArrowDown');
   await page.keyboard.press('F2');
-  await page.locator('.inplace input').fill(to);
+  await page.locator('.inplace > input').fill(to);
   await page.keyboard.press('Enter');
   await page.locator(`[data-id="G1/s/${to}"]`).waitFor({ state: 'attached' });
 }

@@ -46,7 +46,7 @@ test('a new chart is shown, and the next key goes to its drawing', async () => {
   await until(() => page.evaluate(() => document.activeElement?.getAttribute('role') === 'application'), 'the drawing has the keys');
   await page.locator('.marks .selected').first().waitFor({ state: 'attached' });
   await page.keyboard.press('F2');
-  await page.locator('.inplace input').fill('Wait');
+  await page.locator('.inplace > input').fill('Wait');
   await page.keyboard.press('Enter');
   await drawn(page);
   assert.match(await textOf(page), /chart Chart \{\n {2}initial step Wait\n\}/);

@@ -301,7 +301,7 @@ test('users stay logged in over a restart', async () => {
   await page.locator('.sheet').focus();
   for (let n = 0; n < 3; n++) await page.keyboard.press('ArrowDown');
   await page.keyboard.press('F2');
-  await page.locator('.inplace input').fill('Mine');
+  await page.locator('.inplace > input').fill('Mine');
   await page.keyboard.press('Enter');
   await page.locator('[data-id="G1/s/Mine"]').waitFor({ state: 'attached' });
   await page.keyboard.press('Control+s');

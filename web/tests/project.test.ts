@@ -77,7 +77,7 @@ test('a chart of a used file is shown, runs, and is changed in its own file', as
   await p.keyboard.press('ArrowDown');
   await p.keyboard.press('F2');
   await p.getByText('This chart stands in lib/axis.g7').first().waitFor();
-  assert.equal(await p.locator('.inplace input').count(), 0);
+  assert.equal(await p.locator('.inplace > input').count(), 0);
   await p.getByRole('button', { name: 'lib/axis.g7', exact: true }).click();
   await until(async () => (await p.getByRole('tab', { name: 'lib/axis.g7' }).getAttribute('aria-selected')) === 'true', 'its own file is shown');
   await end(p);

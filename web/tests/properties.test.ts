@@ -39,7 +39,7 @@ test('a comment is put on the drawing, moved, changed and taken away', async () 
   const page = await open(b, site, 'loop.g7');
   await page.locator('.sheet').focus();
   await page.keyboard.press('c');
-  await page.locator('.inplace input').fill('what it does');
+  await page.locator('.inplace > input').fill('what it does');
   await page.keyboard.press('Enter');
   const note = item(page, 'G1/n/0');
   await note.waitFor({ state: 'attached' });
@@ -57,7 +57,7 @@ test('a comment is put on the drawing, moved, changed and taken away', async () 
   );
   await page.locator('.sheet').focus();
   await page.keyboard.press('Enter');
-  await page.locator('.inplace input').fill('why');
+  await page.locator('.inplace > input').fill('why');
   await page.keyboard.press('Enter');
   await says(page, /comment "why" at \(/);
   await page.locator('.sheet').focus();

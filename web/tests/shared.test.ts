@@ -87,7 +87,7 @@ test('breakpoints are those of all pages, and a page with another text is told s
   const three = await open(b, site, 'shared.g7');
   await three.locator('[data-id="G1/s/0"]').first().click({ force: true });
   await three.keyboard.press('F2');
-  await three.locator('.inplace input').fill('Other');
+  await three.locator('.inplace > input').fill('Other');
   await three.keyboard.press('Enter');
   await three.locator('[data-id="G1/s/Other"]').waitFor({ state: 'attached' });
   await joined(three);

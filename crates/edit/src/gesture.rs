@@ -241,6 +241,15 @@ pub enum Gesture {
         /// The new contents of the row.
         row: Row,
     },
+    /// Declares variables, together with a gesture that names them.
+    Declare {
+        /// Their rows.
+        rows: Vec<Row>,
+        /// The gesture, which is undone with them.
+        #[serde(default)]
+        #[cfg_attr(feature = "types", ts(type = "Gesture | null", optional))]
+        with: Option<Box<Gesture>>,
+    },
     /// Deletes a variable.
     DeleteVariable {
         /// Its name, `Chart.name` if it belongs to a chart.

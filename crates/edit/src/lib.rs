@@ -24,6 +24,7 @@ mod difference;
 mod draft;
 mod gesture;
 mod gestures;
+mod heads;
 mod history;
 mod id;
 mod needs;
@@ -35,11 +36,13 @@ pub use copy::{copy, copy_placed};
 use g7_model::say;
 pub use gesture::{Alignment, Branching, ChartSort, Gesture, LinkEnd, Row, Sort, What};
 pub use gestures::{Joined, Renaming};
+pub use heads::{Head, meant};
 pub use history::History;
 pub use id::{End, ItemId, NoId, Part};
 pub use splice::{Splice, spliced};
 
 use g7_syntax::Tree;
+pub use g7_syntax::UNITS;
 
 use change::refuse;
 use draft::Draft;

@@ -1,36 +1,103 @@
-//! Changes that fix a problem; offered only if they certainly do.
+//! Changes that fix a problem. A problem carries some; others are gestures, which are drafted when somebody
+//! chooses one: a draft reads the file anew, and a file may have hundreds of problems.
 
-use g7_edit::{Gesture, ItemId, Row, Splice};
+use g7_edit::{Edit, Gesture, ItemId, Row, Splice};
 use g7_model::{Problem, Said, TextEdit, codes, say};
 
 use crate::file::File;
 use crate::gestures::draft;
 use crate::ids::{self, Thing};
+use crate::undeclared::{Undeclared, undeclared, unknown};
 
 /// A change that fixes a problem.
 #[derive(Debug)]
 pub struct Fix {
     /// Its effect, as an order.
     pub title: String,
-    /// The change of the text.
-    pub splices: Vec<Splice>,
+    way: Way,
 }
 
-/// The fixes of a problem; gestures are tried only if `time` is true.
-pub fn fixes(file: &File, p: &Problem, time: bool) -> Vec<Fix> {
-    let mut found: Vec<Fix> = carried(file, p);
-    if found.is_empty() && time && file.is_clean() {
-        let gestures = gestures(file, p);
-        found.extend(gestures.into_iter().filter_map(|(title, gesture)| {
-            let edit = draft(file, &gesture).ok()?;
-            Some(Fix { title: title.in_language(file.language), splices: edit.splices })
-        }));
+#[derive(Debug)]
+enum Way {
+    Splices(Vec<Splice>),
+    Gesture(Gesture),
+}
+
+impl Fix {
+    /// The change of the text, if the problem carries it; that of a gesture is found by [`Fix::edit`], which reads
+    /// the file anew.
+    pub fn splices(&self) -> Option<&[Splice]> {
+        match &self.way {
+            Way::Splices(splices) => Some(splices),
+            Way::Gesture(_) => None,
+        }
     }
-    found
+
+    /// The change of the file.
+    pub fn edit(&self, file: &File) -> Result<Edit, Said> {
+        match &self.way {
+            Way::Splices(splices) => Ok(Edit { splices: splices.clone(), ..Edit::default() }),
+            Way::Gesture(gesture) => draft(file, gesture),
+        }
+    }
 }
 
-/// The fixes that the problem carries.
-fn carried(file: &File, p: &Problem) -> Vec<Fix> {
+/// The fixes of the problems of a file. What they have in common is found once.
+pub struct Fixes<'f> {
+    file: &'f File,
+    undeclared: Vec<Undeclared>,
+}
+
+impl<'f> Fixes<'f> {
+    /// Those of a file.
+    pub fn of(file: &'f File) -> Fixes<'f> {
+        Fixes { file, undeclared: undeclared(file.text(), &file.source.document, &file.problems) }
+    }
+
+    /// The names that nothing declares.
+    pub fn undeclared(&self) -> &[Undeclared] {
+        &self.undeclared
+    }
+
+    /// The fixes of a problem of the file: those that it carries, otherwise gestures. A name that nothing declares may
+    /// be a slip or a new one, so it has both.
+    pub fn fixes(&self, p: &Problem) -> Vec<Fix> {
+        let mut found = carried(self.file, p);
+        let new = unknown(self.file.text(), p);
+        if self.file.is_clean() && (found.is_empty() || new.is_some()) {
+            let gestures = match new {
+                Some(name) => self.declarations(name),
+                None => gestures(self.file, p),
+            };
+            let title = |t: Said| t.in_language(self.file.language);
+            found.extend(
+                gestures.into_iter().map(|(t, gesture)| Fix { title: title(t), way: Way::Gesture(gesture) }),
+            );
+        }
+        found
+    }
+
+    /// The declarations of a name, the likely one first.
+    fn declarations(&self, name: &str) -> Vec<(Said, Gesture)> {
+        let Some(new) = self.undeclared.iter().find(|u| u.name == name) else { return Vec::new() };
+        let mut classes = ["input", "output", "var"];
+        classes.sort_by_key(|class| *class != new.class);
+        let ty = new.ty.as_str();
+        let declared = |class: &str| {
+            let title = match class {
+                "input" => say!("declare `{name} : {ty}` as an input"),
+                "output" => say!("declare `{name} : {ty}` as an output"),
+                _ => say!("declare `{name} : {ty}` as a variable"),
+            };
+            let rows = vec![Row { class: class.to_owned(), ..new.row() }];
+            (title, Gesture::Declare { rows, with: None })
+        };
+        classes.map(declared).into()
+    }
+}
+
+/// The fixes that a problem carries.
+pub fn carried(file: &File, p: &Problem) -> Vec<Fix> {
     let splice = |edit: &TextEdit| {
         let range = file.source.range(edit.at);
         Splice::new(range.start, range.end, edit.text.as_str())
@@ -38,7 +105,7 @@ fn carried(file: &File, p: &Problem) -> Vec<Fix> {
     let fix = |fix: &g7_model::Fix| {
         let mut splices: Vec<Splice> = fix.edits.iter().map(splice).collect();
         splices.sort_by_key(|s| (s.start, s.end));
-        Fix { title: fix.label.in_language(file.language), splices }
+        Fix { title: fix.label.in_language(file.language), way: Way::Splices(splices) }
     };
     p.fixes.iter().map(fix).collect()
 }
@@ -68,25 +135,5 @@ fn gestures(file: &File, p: &Problem) -> Vec<(Said, Gesture)> {
     {
         return vec![(say!("delete this transition"), Gesture::Delete { ids: vec![id], heal: false })];
     }
-    if p.code == &codes::UNKNOWN_NAME && is_name(there) && *p.what == format!("nothing is called `{there}`") {
-        let declared = |class: &str, title: Said| {
-            let row = Row {
-                name: there.to_owned(),
-                class: class.to_owned(),
-                ty: "BOOL".to_owned(),
-                ..Row::default()
-            };
-            (title, Gesture::Variable { name: None, row })
-        };
-        return vec![
-            declared("input", say!("declare `{there}` as an input")),
-            declared("output", say!("declare `{there}` as an output")),
-            declared("var", say!("declare `{there}` as a variable")),
-        ];
-    }
     Vec::new()
-}
-
-fn is_name(text: &str) -> bool {
-    !text.is_empty() && text.chars().all(|c| c.is_alphanumeric() || c == '_')
 }

@@ -5,10 +5,13 @@ use std::cell::RefCell;
 use std::collections::HashMap;
 
 use g7_draw::Options;
-use g7_edit::{Edit, Gesture, ItemId, Joined};
-use g7_model::{Document, Said};
+use g7_edit::{Edit, Gesture, ItemId, Joined, spliced};
+use g7_model::{Document, Said, Span, say};
+use g7_rig::Source;
 
-use crate::file::File;
+use crate::file::{File, OWN};
+use crate::ids;
+use crate::undeclared::{Undeclared, undeclared};
 
 /// The change that a gesture would make.
 pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
@@ -19,6 +22,28 @@ pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
 /// The steps that a deletion would join if it heals.
 pub fn joins(file: &File, ids: &[ItemId]) -> Result<Vec<Joined>, Said> {
     Ok(g7_edit::joins(&file.as_edited(), ids)?)
+}
+
+/// A file as a gesture would leave it.
+#[derive(Debug)]
+pub struct After {
+    /// The document.
+    pub document: Document,
+    /// The names that nothing declares, as far as the symbol of the gesture uses them.
+    pub undeclared: Vec<Undeclared>,
+}
+
+/// The effect of a gesture; the file stays as it is.
+pub fn foresee(file: &File, gesture: &Gesture) -> Result<After, Said> {
+    let edit = draft(file, gesture)?;
+    let text = spliced(file.text(), &edit.splices).ok_or_else(|| say!("the change does not fit the text"))?;
+    let source = Source::native(&file.source.name, text.into_bytes(), OWN.0).linked_like(&file.source);
+    let problems = g7_rig::testing::problems(&source, None).unwrap_or_default();
+    let selected: Vec<String> = edit.select.iter().map(ItemId::to_string).collect();
+    let mut undeclared = undeclared(&source.text, &source.document, &problems);
+    let here = |at: &Span| ids::at(&source.document, *at).is_some_and(|t| selected.contains(&t.id()));
+    undeclared.retain(|u| u.uses.iter().any(here));
+    Ok(After { document: source.document, undeclared })
 }
 
 /// A part of a chart as text, with the places of its symbols.

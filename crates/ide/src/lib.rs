@@ -39,6 +39,7 @@ pub mod rules;
 pub mod search;
 pub mod tables;
 pub mod tokens;
+pub mod undeclared;
 
 pub use file::{File, OWN, Readable, Texts, convert};
 pub use format::format;

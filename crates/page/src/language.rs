@@ -1,7 +1,8 @@
 //! Answers to the text view, in the form in which they are sent.
 
+use g7_edit::{Head, UNITS};
 use g7_ide::{File, completion, hover, logic, references, search, tables, tokens};
-use g7_model::{Said, VarKind};
+use g7_model::{Language, Qualifier, Said, VarKind, words};
 use serde::{Deserialize, Serialize};
 
 use crate::places::units;
@@ -254,6 +255,68 @@ pub(crate) fn logic_read(tongue: Tongue, text: &str) -> Result<String, Said> {
         Tongue::Ld => logic::Tongue::Ld,
     };
     logic::read(tongue, text)
+}
+
+/// A qualifier of actions.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+struct QualifierRow {
+    name: &'static str,
+    /// A time stands behind it.
+    timed: bool,
+    /// In a few words.
+    does: String,
+}
+
+/// An action as typed, and the parts of its head.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
+pub(crate) struct ActionForm {
+    text: String,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    qualifier: Option<&'static str>,
+    /// Its time as typed.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    time: Option<String>,
+    /// The number and the unit of the time, if it has just one of each.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    amount: Option<(String, &'static str)>,
+    /// All qualifiers.
+    qualifiers: Vec<QualifierRow>,
+    /// The units of times.
+    units: Vec<&'static str>,
+}
+
+/// The parts of an action, with another qualifier or time where one is given; an empty qualifier takes it away.
+pub(crate) fn action_form(
+    text: &str,
+    qualifier: Option<&str>,
+    time: Option<String>,
+    language: Language,
+) -> ActionForm {
+    let mut text = text.to_owned();
+    let mut head = Head::of(&text);
+    if let Some(name) = qualifier {
+        head.qualifier = Qualifier::named(name);
+    }
+    head.time = time.clone().or(head.time);
+    if qualifier.is_some() || time.is_some() {
+        text = head.written();
+        head = Head::of(&text);
+    }
+    let row = |q: Qualifier| QualifierRow {
+        name: q.name(),
+        timed: q.timed(),
+        does: words::in_language(words::of_qualifier(q)[0], language).to_owned(),
+    };
+    ActionForm {
+        qualifier: head.qualifier.map(Qualifier::name),
+        amount: head.amount().map(|(number, unit)| (number.to_owned(), unit)),
+        time: head.time,
+        qualifiers: Qualifier::ALL.map(row).into(),
+        units: UNITS.into_iter().rev().collect(),
+        text,
+    }
 }
 
 fn byte(file: &File, unit: usize) -> usize {

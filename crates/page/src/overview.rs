@@ -26,6 +26,8 @@ pub(crate) struct Overview {
     can_undo: bool,
     can_redo: bool,
     problems: Vec<problems::Row>,
+    /// The names that nothing declares.
+    undeclared: Vec<problems::NewName>,
     charts: Vec<ChartRow>,
     profile: &'static str,
     switches: Vec<SwitchRow>,
@@ -111,6 +113,7 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         TestRow { name: t.title.to_string(), from, to, plant: t.plant.as_ref().map(|p| p.text.to_string()) }
     });
     let scan = document.cycle();
+    let (problems, undeclared) = problems::rows(file);
     let parts = file.source.others().iter().filter(|o| o.library);
     Overview {
         file: name.to_owned(),
@@ -121,7 +124,8 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         imported: file.imported,
         can_undo: file.history.can_undo(),
         can_redo: file.history.can_redo(),
-        problems: problems::rows(file),
+        problems,
+        undeclared,
         charts: charts(file),
         profile: document.profile().map_or(g7_model::ProfileName::default(), |p| p.name).name(),
         switches: switches(document),

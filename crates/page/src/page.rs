@@ -11,9 +11,9 @@ use g7_rig::named;
 
 use crate::answer::{self, Answer, Before, Breaks, Shelved, Style, Text, ok, shelf, shelved};
 use crate::between::{self, Between, Lent, WHOLE};
-use crate::edit::{self, Edited};
+use crate::edit::{self, Edited, Foreseen};
 use crate::export::{self, Form, Out};
-use crate::language::{self, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
+use crate::language::{self, ActionForm, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::{Merged, merge};
 use crate::overview::{Overview, overview};
 use crate::places::{Change, inward};
@@ -264,6 +264,25 @@ impl Answers for Page {
         let edited = edit::edit(&file, self.file_mut(&file)?, &gesture)?;
         self.shelve(&file);
         Ok(edited)
+    }
+
+    fn foresee(&mut self, file: String, gesture: Gesture) -> Result<Foreseen, Said> {
+        Ok(edit::foresee(self.file(&file)?, &gesture))
+    }
+
+    fn mend(&mut self, file: String, version: u64, problem: usize, fix: usize) -> Result<Edited, Said> {
+        let edited = edit::mend(&file, self.file_mut(&file)?, version, (problem, fix))?;
+        self.shelve(&file);
+        Ok(edited)
+    }
+
+    fn action_form(
+        &mut self,
+        text: String,
+        qualifier: Option<String>,
+        time: Option<String>,
+    ) -> Result<ActionForm, Said> {
+        Ok(language::action_form(&text, qualifier.as_deref(), time, self.language))
     }
 
     fn undo(&mut self, file: String) -> Result<Edited, Said> {

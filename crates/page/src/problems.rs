@@ -1,7 +1,8 @@
 //! Problems in the form that the page shows.
 
-use g7_ide::File;
-use g7_ide::ids;
+use g7_ide::fixes::{Fixes, carried};
+use g7_ide::undeclared::Undeclared;
+use g7_ide::{File, ids};
 use g7_model::{Document, Problem, Severity};
 use serde::Serialize;
 
@@ -25,6 +26,9 @@ pub(crate) struct Row {
     /// The ids of the symbols that it marks.
     items: Vec<String>,
     fixes: Vec<Fix>,
+    /// The name whose declaration solves it; the fix without splices that comes first is the likely one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    declares: Option<String>,
 }
 
 /// How grave a problem is.
@@ -38,14 +42,26 @@ enum Grave {
 
 /// A change that fixes a problem.
 #[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct Fix {
     title: String,
-    splices: Vec<Change>,
+    /// Absent for a gesture: the message `mend` executes it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    splices: Option<Vec<Change>>,
 }
 
-/// Number of problems for which gestures are tried as fixes; each costs a check of the whole file.
-const SOME: usize = 8;
+/// A name that nothing declares, with the declaration that its uses ask for.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Undeclared"))]
+pub(crate) struct NewName {
+    name: String,
+    /// `input`, `output` or `var`.
+    class: &'static str,
+    #[serde(rename = "type")]
+    ty: String,
+    /// The ids of the symbols that use it.
+    items: Vec<String>,
+}
 
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
@@ -55,18 +71,30 @@ struct Related {
     what: String,
 }
 
-/// The problems of a file, with fixes.
-pub(crate) fn rows(file: &File) -> Vec<Row> {
-    let small = file.text().len() < 100_000;
-    file.problems.iter().enumerate().map(|(i, p)| whole_row(file, p, small && i < SOME)).collect()
+/// The problems of a file, with fixes, and the names that nothing declares.
+pub(crate) fn rows(file: &File) -> (Vec<Row>, Vec<NewName>) {
+    let known = Fixes::of(file);
+    let rows = file.problems.iter().map(|p| whole_row(file, p, known.fixes(p))).collect();
+    (rows, names(&file.source.document, known.undeclared()))
 }
 
-/// One problem, with only those fixes that need no check of the file.
+/// One problem that the overview of the file does not have, with only those fixes that it carries.
 pub(crate) fn row(file: &File, p: &Problem) -> Row {
-    whole_row(file, p, false)
+    whole_row(file, p, carried(file, p))
 }
 
-fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
+/// Names that nothing declares, with the symbols of a document.
+pub(crate) fn names(document: &Document, undeclared: &[Undeclared]) -> Vec<NewName> {
+    let one = |u: &Undeclared| {
+        let mut items: Vec<String> =
+            u.uses.iter().filter_map(|at| ids::at(document, *at)).map(ids::Thing::id).collect();
+        items.dedup();
+        NewName { name: u.name.clone(), class: u.class, ty: u.ty.clone(), items }
+    };
+    undeclared.iter().map(one).collect()
+}
+
+fn whole_row(file: &File, p: &Problem, fixes: Vec<g7_ide::fixes::Fix>) -> Row {
     let (from, to) = file.units(p.at);
     let byte = file.source.range(p.at).start;
     let (line, column) = file.positions.line_column(file.text(), byte);
@@ -74,7 +102,6 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
         let (from, to) = file.units(*at);
         Related { from, to, what: what.in_language(file.language) }
     });
-    let fixes = g7_ide::fixes::fixes(file, p, time);
     Row {
         code: p.code.id,
         title: p.code.title_in(file.language),
@@ -92,8 +119,9 @@ fn whole_row(file: &File, p: &Problem, time: bool) -> Row {
         items: items(&file.source.document, p),
         fixes: fixes
             .into_iter()
-            .map(|f| Fix { splices: outward(file, &f.splices), title: f.title })
+            .map(|f| Fix { splices: f.splices().map(|s| outward(file, s)), title: f.title })
             .collect(),
+        declares: g7_ide::undeclared::unknown(file.text(), p).map(str::to_owned),
     }
 }
 

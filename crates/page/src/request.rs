@@ -6,9 +6,9 @@ use serde::Deserialize;
 
 use crate::answer::{Answer, Before, Breaks, Shelved, Style, Text, ok};
 use crate::drawing::Wish as Drawing;
-use crate::edit::Edited;
+use crate::edit::{Edited, Foreseen};
 use crate::export::{Form, Out};
-use crate::language::{Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
+use crate::language::{ActionForm, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::Merged;
 use crate::overview::Overview;
 use crate::places::Change;
@@ -98,6 +98,16 @@ requests! {
 
     /// Executes a gesture.
     fn edit(file: String, gesture: g7_edit::Gesture) -> Edited;
+
+    /// The effect that a gesture would have.
+    fn foresee(file: String, gesture: g7_edit::Gesture) -> Foreseen;
+
+    /// Executes a fix, by the number of its problem in the overview of this version and its own number there.
+    fn mend(file: String, version: u64, problem: usize, fix: usize) -> Edited;
+
+    /// The parts of an action as typed, with another qualifier or time where one is given; an empty qualifier takes it
+    /// away.
+    fn action_form(text: String, qualifier: Option<String>, time: Option<String>) -> ActionForm;
 
     fn undo(file: String) -> Edited;
 

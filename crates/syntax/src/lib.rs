@@ -36,7 +36,7 @@ mod words;
 
 pub use decode::decode;
 pub use lines::{LineColumn, LineIndex};
-pub use parse::SWITCHES;
+pub use parse::{SWITCHES, UNITS};
 pub use print::part::{Part, chart_items_apart, items_apart, print_part};
 pub use print::{Spelled, print, print_expr, print_statements};
 pub use tokens::{

@@ -115,6 +115,15 @@ export const commands: Command[] = [
     run: () => editor.edit(id(), 'action'),
   },
   {
+    id: 'declare',
+    title: 'cmd.declare',
+    keys: ['D'],
+    near: true,
+    icon: 'check',
+    when: () => editor.undeclared.length > 0,
+    run: () => editor.declare(editor.undeclared),
+  },
+  {
     id: 'jump',
     title: 'cmd.jump',
     keys: ['J'],

@@ -3,8 +3,9 @@
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { actionOf, kindOf, leavingPart } from '../lib/ids';
-import { page } from '../lib/page';
-import type { Box, Edited, Gesture } from '../lib/protocol';
+import { declaration, listed, type NewName } from '../lib/names';
+import { page, Refused } from '../lib/page';
+import type { Box, Edited, Gesture, Undeclared } from '../lib/protocol';
 import type { Placed as Item } from '../lib/redrawn';
 import { choices, drawnFor } from '../lib/instances.svelte';
 import { shell } from '../lib/shell.svelte';
@@ -41,6 +42,17 @@ interface Camera {
   reveal(box: Box, centre?: boolean): void;
   moveTo(x: number, y: number): void;
   focus(): void;
+}
+
+/** Gives the reason of a refusal to a field, if there is one. */
+async function told<T>(work: Promise<T>, refused?: (why: string) => void): Promise<T | null> {
+  try {
+    return await work;
+  } catch (error) {
+    if (!refused || !(error instanceof Refused)) throw error;
+    refused(error.message);
+    return null;
+  }
 }
 
 class Editor {
@@ -80,6 +92,14 @@ class Editor {
   /** The file in which the chart stands, if it is another one: it is changed there. */
   readonly elsewhere: string | null = $derived(this.file?.look.charts.find((c) => c.name === this.chart)?.file ?? null);
 
+  /** The names that nothing declares in the selected symbols; without a selection, in the whole file. */
+  readonly undeclared: readonly Undeclared[] = $derived.by(() => {
+    const all = this.file?.look.undeclared ?? [];
+    if (shell.selection.size === 0) return all;
+    const chosen = (id: string) => shell.selection.has(id) || shell.selection.has(actionOf(id)?.step ?? '');
+    return all.filter((u) => u.items.some(chosen));
+  });
+
   /** Tells where a chart of another file is changed; false for a chart of this one. */
   #refuses(): boolean {
     if (this.elsewhere === null) return false;
@@ -87,11 +107,18 @@ class Editor {
     return true;
   }
 
-  /** Executes a gesture: shows a refusal to the user, selects the new symbols. */
-  async apply(gesture: Gesture): Promise<Edited | undefined> {
+  /** Executes a gesture: shows a refusal to the user, selects the new symbols. A field takes the refusal itself. */
+  async apply(gesture: Gesture, refused?: (why: string) => void): Promise<Edited | undefined> {
     const { file } = this;
     if (this.#refuses()) return undefined;
-    return file ? this.#draw(file, () => file.edit(gesture)) : undefined;
+    return file ? this.#draw(file, () => told(file.edit(gesture), refused)) : undefined;
+  }
+
+  /** Declares names, together with the gesture that names them. */
+  async declare(rows: readonly NewName[], gesture?: Gesture | null, refused?: (why: string) => void): Promise<Edited | undefined> {
+    const edited = await this.apply(declaration(rows, gesture), refused);
+    if (edited && rows.length > 0) shell.say(t('names.done', { names: listed(rows) }));
+    return edited;
   }
 
   async history(way: 'undo' | 'redo'): Promise<void> {

@@ -4,7 +4,7 @@ import { ChangeSet, type Text } from '@codemirror/state';
 import { drafts } from './drafts.svelte';
 import { page, type Message } from './page';
 import { prefs } from './prefs.svelte';
-import type { Edited, Gesture, Look, Shelved, Splice } from './protocol';
+import type { Edited, Gesture, Look, Problem, Shelved, Splice } from './protocol';
 import { Redraws, type Drawing } from './redrawn';
 import { Conflict, server } from './server';
 
@@ -90,7 +90,18 @@ export class OpenFile {
     return this.#put(splices, unit, 'text');
   }
 
-  /** Applies an offered fix, as an edit of its own. */
+  /** Executes the fix of this number of a problem of the present look. */
+  async mend(problem: Problem, fix: number): Promise<void> {
+    const splices = problem.fixes[fix]?.splices;
+    if (splices) return this.fix(splices);
+    const { version } = this.look;
+    const of = this.look.problems.indexOf(problem);
+    // A newer look has come meanwhile, and shows its own problems.
+    if (of < 0) return;
+    await this.#turn(() => this.#change({ do: 'mend', file: this.name, version, problem: of, fix }, 'structure'));
+  }
+
+  /** Applies a change that was offered, as an edit of its own. */
   fix(splices: Splice[]): Promise<void> {
     return this.#put(splices, true, 'structure');
   }
@@ -187,7 +198,7 @@ export class OpenFile {
     return done;
   }
 
-  async #change(message: Message<'edit' | 'undo' | 'redo' | 'format'>, origin: Origin): Promise<Edited> {
+  async #change(message: Message<'edit' | 'mend' | 'undo' | 'redo' | 'format'>, origin: Origin): Promise<Edited> {
     const edited = await page.call(message);
     let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
     for (const mine of this.#typed) {

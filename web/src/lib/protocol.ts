@@ -5,6 +5,20 @@
 /** The kinds of claims. */
 export type About = 'step' | 'transition' | 'action' | 'variable' | 'deadlock' | 'conflict' | 'chart' | 'property';
 
+/** An action as typed, and the parts of its head. */
+export type ActionForm = {
+  text: string;
+  qualifier?: string;
+  /** Its time as typed. */
+  time?: string;
+  /** The number and the unit of the time, if it has just one of each. */
+  amount?: [string, string];
+  /** All qualifiers. */
+  qualifiers: Array<QualifierRow>;
+  /** The units of times. */
+  units: Array<string>;
+};
+
 /** A test with the change that adds it. */
 export type Added = { title: string; splices: Array<Splice> };
 
@@ -141,6 +155,8 @@ export type Edited = {
   can_undo: boolean;
   can_redo: boolean;
   problems: Array<Problem>;
+  /** The names that nothing declares. */
+  undeclared: Array<Undeclared>;
   charts: Array<ChartRow>;
   profile: string;
   switches: Array<SwitchRow>;
@@ -168,7 +184,19 @@ export type Failure = {
 };
 
 /** A change that fixes a problem. */
-export type Fix = { title: string; splices: Array<Splice> };
+export type Fix = {
+  title: string;
+  /** Absent for a gesture: the message `mend` executes it. */
+  splices?: Array<Splice>;
+};
+
+/** The effect that a gesture would have. */
+export type Foreseen = {
+  /** The text that was probably meant by one that cannot be read. */
+  meant?: string;
+  /** The names in its symbol that nothing would declare. */
+  undeclared: Array<Undeclared>;
+};
 
 /** A form in which a chart can be exported. */
 export type Form = {
@@ -429,6 +457,13 @@ export type Gesture =
     row: VariableEdit;
   }
   | {
+    g: 'declare';
+    /** Their rows. */
+    rows: Array<VariableEdit>;
+    /** The gesture, which is undone with them. */
+    with?: Gesture | null;
+  }
+  | {
     g: 'delete_variable';
     /** Its name, `Chart.name` if it belongs to a chart. */
     name: string;
@@ -556,6 +591,8 @@ export type Look = {
   can_undo: boolean;
   can_redo: boolean;
   problems: Array<Problem>;
+  /** The names that nothing declares. */
+  undeclared: Array<Undeclared>;
   charts: Array<ChartRow>;
   profile: string;
   switches: Array<SwitchRow>;
@@ -624,6 +661,8 @@ export type Problem = {
   /** The ids of the symbols that it marks. */
   items: Array<string>;
   fixes: Array<Fix>;
+  /** The name whose declaration solves it; the fix without splices that comes first is the likely one. */
+  declares?: string;
 };
 
 /** All answers to the questions of a file. */
@@ -678,6 +717,15 @@ export type ProofWays = {
   test?: Added;
   /** Why there is no test. */
   untested?: [string, string, string];
+};
+
+/** A qualifier of actions. */
+export type QualifierRow = {
+  name: string;
+  /** A time stands behind it. */
+  timed: boolean;
+  /** In a few words. */
+  does: string;
 };
 
 /** The coverage of one kind of element. */
@@ -855,6 +903,16 @@ export type Text = { text: string };
 /** A language of controllers. */
 export type Tongue = 'st' | 'il' | 'ld';
 
+/** A name that nothing declares, with the declaration that its uses ask for. */
+export type Undeclared = {
+  name: string;
+  /** `input`, `output` or `var`. */
+  class: string;
+  type: string;
+  /** The ids of the symbols that use it. */
+  items: Array<string>;
+};
+
 /** The classes of variables. */
 export type VariableClass = 'input' | 'output' | 'var' | 'const';
 
@@ -922,6 +980,13 @@ export interface Requests {
   splice: { file: string; splices: Array<Splice>; unit?: boolean };
   /** Executes a gesture. */
   edit: { file: string; gesture: Gesture };
+  /** The effect that a gesture would have. */
+  foresee: { file: string; gesture: Gesture };
+  /** Executes a fix, by the number of its problem in the overview of this version and its own number there. */
+  mend: { file: string; version: number; problem: number; fix: number };
+  /** The parts of an action as typed, with another qualifier or time where one is given; an empty qualifier takes it
+   * away. */
+  action_form: { text: string; qualifier?: string | null; time?: string | null };
   undo: { file: string };
   redo: { file: string };
   /** The steps that would be joined if these parts were deleted and the chart healed. */
@@ -1047,6 +1112,9 @@ export interface Answers {
   text: Text;
   splice: Look;
   edit: Edited;
+  foresee: Foreseen;
+  mend: Edited;
+  action_form: ActionForm;
   undo: Edited;
   redo: Edited;
   joins: Array<Joined>;

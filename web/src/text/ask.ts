@@ -67,10 +67,14 @@ export function hover(file: OpenFile) {
   });
 }
 
-function mend(fix: Fix): Action {
+function mend(file: OpenFile, problem: Problem, fix: Fix, n: number): Action {
+  const { splices } = fix;
   return {
     name: fix.title.replaceAll('`', ''),
-    apply: (view) => view.dispatch({ changes: fix.splices, annotations: asUnit.of(true), userEvent: 'input.fix' }),
+    apply: (view) => {
+      if (splices) view.dispatch({ changes: splices, annotations: asUnit.of(true), userEvent: 'input.fix' });
+      else void shell.try(() => file.mend(problem, n));
+    },
   };
 }
 
@@ -89,15 +93,15 @@ function why(code: string): Action {
   };
 }
 
-export function diagnostics(problems: readonly Problem[], length: number): Diagnostic[] {
-  return problems.map((p) => ({
+export function diagnostics(file: OpenFile, length: number): Diagnostic[] {
+  return file.look.problems.map((p) => ({
     from: Math.min(p.from, length),
     to: Math.min(Math.max(p.to, p.from), length),
     severity: p.severity,
     source: p.code,
     message: p.what,
     renderMessage: () => markdown(p.help ? `${p.what}\n\n${p.help}` : p.what),
-    actions: [...p.fixes.map(mend), why(p.code)],
+    actions: [...p.fixes.map((fix, n) => mend(file, p, fix, n)), why(p.code)],
   }));
 }
 

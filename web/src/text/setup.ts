@@ -37,14 +37,15 @@ export function format(file: OpenFile): void {
   void shell.try(() => file.format());
 }
 
-/** Fixes the problem at the cursor if there is exactly one fix; otherwise the list of problems
- * offers the choices. */
+/** Fixes the problem at the cursor if there is exactly one fix, and declares a name that is no slip as its use asks for;
+ * otherwise the list of problems offers the choices. */
 function mend(file: OpenFile): Command {
   return ({ state }) => {
     const at = state.selection.main.head;
-    const fixes = file.look.problems.filter((p) => p.from <= at && at <= p.to).flatMap((p) => p.fixes);
-    const [only] = fixes;
-    if (only && fixes.length === 1) void shell.try(() => file.fix(only.splices));
+    const here = file.look.problems.filter((p) => p.from <= at && at <= p.to && p.fixes.length > 0);
+    const [only] = here;
+    const plain = only && (only.fixes.length === 1 || (only.declares !== undefined && !only.fixes[0]?.splices));
+    if (only && plain && here.length === 1) void shell.try(() => file.mend(only, 0));
     else shell.problems(at);
     return true;
   };

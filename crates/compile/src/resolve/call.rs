@@ -269,8 +269,8 @@ fn whole(ty: Type) -> bool {
     ty.is_bits() || ty.is_integer() || ty == Type::Bool
 }
 
-/// `DINT_TO_INT`.
-fn conversion(name: &str) -> Option<(Type, Type)> {
+/// The types that the name of a conversion names, `DINT_TO_INT`.
+pub fn conversion(name: &str) -> Option<(Type, Type)> {
     let upper = name.to_ascii_uppercase();
     let (from, to) = upper.split_once("_TO_")?;
     let elementary = |name: &str| Type::named(name).filter(|ty| ty.elementary().is_some());

@@ -48,11 +48,13 @@ use g7_model::{
 
 use crate::held;
 use crate::ir::{ChartId, Expr, Unit};
+pub use call::conversion;
 use resolver::{Frame, Resolver, Role};
 pub use rules::{of_profile, with_switch};
 pub use scopes::Scopes;
 pub use system::{kept_by_system, set_by_terminal, terminal};
 pub(crate) use trace::{Followed, Traced, Tracer};
+pub use types::common;
 
 /// Nominal scan time where none is written: 10 ms.
 const CYCLE: Nanos = Nanos::from_millis(10);

@@ -70,7 +70,7 @@ fn bits(ty: Type) -> u8 {
 }
 
 /// The narrowest type that both widen to.
-pub(super) fn common(a: Type, b: Type) -> Option<Type> {
+pub fn common(a: Type, b: Type) -> Option<Type> {
     match (a, b) {
         (Type::String(m), Type::String(n)) => Some(Type::String(m.max(n))),
         (Type::Fb(_), _) | (_, Type::Fb(_)) => None,

@@ -1,6 +1,6 @@
 //! Changes single fields of steps, transitions and charts.
 
-use g7_model::{Action, ChartItem, ChartKind, FileId, StepKind, say};
+use g7_model::{Action, ChartItem, ChartKind, FileId, Problem, Span, StepKind, say};
 
 use super::graph::{arriving, leaving, may_arrive, may_leave};
 use super::nodes::{Node, node};
@@ -41,28 +41,51 @@ pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<
     Ok(())
 }
 
+/// The text before that of an action, so that it can be read alone.
+const HEAD: &str = "chart A {\nstep 1 {\n";
+
 /// Reads the actions in a text; each keeps the text that was typed.
 #[inline(never)]
 pub(crate) fn read_actions(d: &mut Draft<'_>, text: &str) -> Result<Vec<Action>, Refusal> {
-    const HEAD: &str = "chart A {\nstep 1 {\n";
+    let read = actions(text).map_err(|problems| match problems.first() {
+        Some(problem) => Refusal::new(say!("this is not an action: {}", problem.what)),
+        None => Refusal::new(say!("this is more than the actions of one step")),
+    })?;
+    let mut actions = Vec::new();
+    for (k, action) in read.iter().enumerate() {
+        // Text between two actions, notes included, belongs to the first of them.
+        let from = if k == 0 { 0 } else { action.at.0.start as usize };
+        let to = read.get(k + 1).map_or(text.len(), |n| n.at.0.start as usize);
+        let raw = text.get(from..to).unwrap_or_default().trim();
+        actions.push(Action { at: d.fresh_as(raw), kind: action.kind.clone() });
+    }
+    Ok(actions)
+}
+
+/// The actions in a text, with their places in it; or the problems of the text, none if it is more than the actions
+/// of one step.
+pub(crate) fn actions(text: &str) -> Result<Vec<Action>, Vec<Problem>> {
     let whole = format!("{HEAD}{text}\n}}\n}}\n");
-    let (doc, problems) = g7_syntax::parse(&whole, FileId(0));
-    if let Some(problem) = problems.first() {
-        return refuse(say!("this is not an action: {}", problem.what));
+    let (doc, mut problems) = g7_syntax::parse(&whole, FileId(0));
+    let own = |at: &mut Span| {
+        let head = HEAD.len() as u32;
+        (at.start, at.end) = (at.start.saturating_sub(head), at.end.saturating_sub(head));
+    };
+    if !problems.is_empty() {
+        problems
+            .iter_mut()
+            .flat_map(|p| &mut p.fixes)
+            .flat_map(|f| &mut f.edits)
+            .for_each(|e| own(&mut e.at));
+        return Err(problems);
     }
     let mut charts = doc.charts();
     let items = charts.next().map(|c| c.items.as_slice()).unwrap_or_default();
     let ([ChartItem::Step(step)], None, 1) = (items, charts.next(), doc.items.len()) else {
-        return refuse(say!("this is more than the actions of one step"));
+        return Err(Vec::new());
     };
-    let mut actions = Vec::new();
-    for (k, action) in step.actions.iter().enumerate() {
-        // Text between two actions, notes included, belongs to the first of them.
-        let from = if k == 0 { HEAD.len() } else { action.at.0.start as usize };
-        let to = step.actions.get(k + 1).map_or(whole.len() - 5, |n| n.at.0.start as usize);
-        let raw = whole.get(from..to).unwrap_or_default().trim();
-        actions.push(Action { at: d.fresh_as(raw), kind: action.kind.clone() });
-    }
+    let mut actions = step.actions.clone();
+    actions.iter_mut().for_each(|a| own(&mut a.at.0));
     Ok(actions)
 }
 

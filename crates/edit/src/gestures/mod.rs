@@ -21,6 +21,7 @@ mod settings;
 mod table;
 mod unread;
 
+pub(crate) use fields::actions;
 pub use heal::Joined;
 pub(crate) use heal::joins;
 pub(crate) use hold::hold;
@@ -67,6 +68,10 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::AddChart { kind, name } => table::add_chart(d, *kind, name.as_deref()),
         Gesture::DeleteChart { chart } => table::delete_chart(d, chart),
         Gesture::Variable { name, row } => table::variable(d, name.as_deref(), row),
+        Gesture::Declare { rows, with } => {
+            with.as_ref().map_or(Ok(()), |gesture| carry_out(d, gesture))?;
+            rows.iter().try_for_each(|row| table::variable(d, None, row))
+        }
         Gesture::DeleteVariable { name } => table::delete_variable(d, name),
         Gesture::Profile { name } => settings::profile(d, name),
         Gesture::Switch { name, on } => settings::switch(d, name, *on),

@@ -3,7 +3,8 @@
 use std::collections::HashMap;
 
 use g7_edit::spliced;
-use g7_ide::{File, Positions, across, fixes, references};
+use g7_ide::fixes::Fixes;
+use g7_ide::{File, Positions, across, references};
 use g7_model::{Said, say};
 use g7_rig::Source;
 use lsp_types::{
@@ -22,17 +23,21 @@ pub(super) fn fixes(open: &Open, p: &CodeActionParams) -> Option<Vec<CodeActionO
     let file = open.file(uri)?;
     let asked = places::bytes(file, p.range);
     let mut found = Vec::new();
+    let known = Fixes::of(file);
     for problem in &file.problems {
         let at = file.source.range(problem.at);
         if at.start > asked.end || asked.start > at.end {
             continue;
         }
-        found.extend(fixes::fixes(file, problem, true).into_iter().map(|fix| {
+        // Here the change itself is asked for, so a gesture that is refused is left out.
+        let drafts =
+            known.fixes(problem).into_iter().filter_map(|fix| Some((fix.edit(file).ok()?, fix.title)));
+        found.extend(drafts.map(|(draft, title)| {
             CodeActionOrCommand::CodeAction(CodeAction {
-                title: fix.title,
+                title,
                 kind: Some(CodeActionKind::QUICKFIX),
                 diagnostics: Some(vec![diagnostic(file, uri, problem)]),
-                edit: Some(edit(uri, places::edits(file, &fix.splices))),
+                edit: Some(edit(uri, places::edits(file, &draft.splices))),
                 ..CodeAction::default()
             })
         }));

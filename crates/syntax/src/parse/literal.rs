@@ -12,7 +12,7 @@ const UNREAD_TIME: Nanos = Nanos::SECOND;
 const UNREAD_NUMBER: u64 = 1;
 
 /// The units of a duration as people write them behind a number.
-const UNITS: [&str; 7] = ["d", "h", "m", "s", "ms", "us", "ns"];
+pub const UNITS: [&str; 7] = ["d", "h", "m", "s", "ms", "us", "ns"];
 
 impl Parser<'_> {
     /// `"…"`, if it stands here.

@@ -25,6 +25,7 @@ mod st;
 mod variable;
 
 pub use file::SWITCHES;
+pub use literal::UNITS;
 
 use crate::lexer::{Lexer, Tok, Token};
 use crate::quote;

@@ -93,8 +93,6 @@ export const canvas = {
   'field.notSign': ['not', 'non', 'não'],
   'field.timeSign': ['time t/X', 'temps t/X', 'tempo t/X'],
   'field.assign': ['becomes', 'prend la valeur', 'toma o valor'],
-  'field.stored': ['on activation', "à l'activation", 'na ativação'],
-  'field.leaving': ['on deactivation', 'à la désactivation', 'na desativação'],
   'field.force': ['forcing order', 'ordre de forçage', 'ordem de forçagem'],
   'field.when': ['only if', 'seulement si', 'só se'],
   'field.hint': ['Enter: done · Tab: go on · Esc: leave it', 'Entrée : valider · Tab : continuer · Échap : laisser', 'Enter: feito · Tab: continuar · Esc: deixar'],
