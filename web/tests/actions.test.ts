@@ -3,7 +3,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { axe, browser, done, open, openWith, playground, press, textOf, type Site } from './lib';
+import { axe, browser, done, open, openWith, playground, press, textOf, until, type Site } from './lib';
 
 const STEP = `output motor : BOOL
 chart G1 {
@@ -60,6 +60,27 @@ test('a qualifier and its time are chosen with the keys alone', async () => {
   await time.press('Enter');
   await field(page).waitFor({ state: 'detached' });
   await says(page, /step 1 \{ L 3m motor \}/);
+  await done(page);
+});
+
+test('the field is seen as a whole, at the lower edge too', async () => {
+  const page = await open(b, site, 'step.g7', { width: 1280, height: 560 });
+  await press(page, 'G1/s/1');
+  await page.keyboard.press('a');
+  await field(page).fill('L motor if n > 3');
+  await field(page).press('Enter');
+  // The field grows by the error, and by what was meant.
+  await page.getByRole('button', { name: /Write L 5s motor if n > 3/ }).waitFor();
+  const inside = () =>
+    page.evaluate(() => {
+      const own = document.querySelector<HTMLElement>('.inplace');
+      const round = own?.offsetParent?.getBoundingClientRect();
+      const box = own?.getBoundingClientRect();
+      return !!round && !!box && box.bottom <= round.bottom && box.top >= round.top;
+    });
+  await until(inside, 'the field is cut off');
+  await page.keyboard.press('Escape');
+  await page.keyboard.press('Escape');
   await done(page);
 });
 

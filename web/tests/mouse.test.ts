@@ -20,11 +20,12 @@ chart G2 {
 }
 `;
 
-const WRONG = `input a : BOOL
-
+// A name that is near another one may be a slip or a new one.
+const SLIP = `input a : BOOL
+output motor : BOOL
 chart G1 {
   initial step 0
-  step 1 { N missing }
+  step 1 { N moter }
   0 -> 1 when a
   1 -> 0 when not a
 }
@@ -34,7 +35,7 @@ let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'chart.g7': CHART, 'wrong.g7': WRONG });
+  site = await playground({ 'chart.g7': CHART, 'slip.g7': SLIP });
   b = await browser();
 });
 
@@ -172,18 +173,18 @@ test('the overview moves the view, pressed and pulled', async () => {
 });
 
 test('from the text, a fix is chosen by keyboard', async () => {
-  const page = await open(b, site, 'wrong.g7');
+  const page = await open(b, site, 'slip.g7');
   await page.getByRole('button', { name: 'Drawing and text' }).click();
   await page.locator('.cm-lintRange-error').waitFor();
   await page.locator('.cm-content').focus();
   await page.keyboard.press('F8');
   await page.keyboard.press('Control+.');
-  // There are three fixes, so the list offers them.
+  // There are several ways, so the list offers them.
   await page.waitForFunction(() => document.activeElement?.classList.contains('problem'));
   await page.keyboard.press('Tab');
   await page.keyboard.press('Tab');
   await page.keyboard.press('Enter');
   await page.locator('.cm-lintRange-error').waitFor({ state: 'detached' });
-  assert.match(await textOf(page), /output missing : BOOL/);
+  assert.match(await textOf(page), /output moter : BOOL/);
   await end(page);
 });

@@ -107,6 +107,10 @@ fn action_forms(text: &str) -> Vec<String> {
     match named.and_then(|n| words.get(n)).and_then(|w| qualifier(w)) {
         Some(q) if q.timed() || time.is_none() => {
             form(q, time.clone(), others(&[named, timed]));
+            // `L motor if n > 3`: what looks like a time is none.
+            if q.timed() && time.is_some() {
+                form(q, None, others(&[named]));
+            }
             // `L hold motor`: a variable as the time.
             if let (true, None, [_, variable, rest @ ..]) = (q.timed(), &time, words.as_slice())
                 && named == Some(0)
@@ -235,6 +239,7 @@ mod tests {
             ("R 3s motor", "R motor"),
             ("3s motor", "L 3s motor"),
             ("D motor if a", "D 5s motor if a"),
+            ("L motor if n > 3", "L 5s motor if n > 3"),
         ] {
             let gesture = Gesture::Action { id: ItemId::step("G", "1"), index: None, text: text.to_owned() };
             assert_eq!(meant(&gesture).as_deref(), Some(form), "{text}");

@@ -6,7 +6,7 @@
 //! links of the chart -> gaps -> Graph
 //! ```
 //!
-//! What must hold: a chart of which every part can be reached has no gaps.
+//! Invariant: a chart of which every part can be reached has no gaps.
 
 use g7_model::{Step, StepKind};
 

@@ -11,7 +11,7 @@ use super::table::{Table, Why};
 use crate::nodes;
 use crate::variables::{Declared, Home, Variables};
 
-/// What an expression is, as far as it matters here.
+/// The kind of an expression, as far as it matters here.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A variable of an enumeration, or a choice of its values.
@@ -142,7 +142,7 @@ impl<'a> Walker<'a> {
         }
     }
 
-    /// What an expression is; its parts get their forms. `hint` is the enumeration of a value that several have.
+    /// The kind of an expression; its parts get their forms. `hint` is the enumeration of a value that several have.
     pub(super) fn typed(&mut self, e: &mut Expr, hint: Option<usize>) -> Kind {
         let at = e.at.0;
         if let Some(n) = e.kind.whole() {

@@ -72,7 +72,7 @@ pub(crate) fn no_array() -> Said {
 /// The values of an enumeration, each with the number that is written behind it.
 pub(crate) type Values = Vec<(Name, Option<Expr>)>;
 
-/// What a variable needs to know of its enumeration.
+/// Facts of an enumeration that its variables need.
 #[derive(Clone, Debug)]
 pub(crate) struct Enumeration {
     pub(crate) name: Name,

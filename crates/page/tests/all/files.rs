@@ -310,11 +310,17 @@ fn every_fix_mends_its_problem() {
         let Ok(text) = std::fs::read_to_string(&path) else { continue };
         let mut page = Asked::default();
         let look = page.open(&text);
-        for problem in look["problems"].as_array().expect("problems") {
-            for fix in problem["fixes"].as_array().expect("fixes") {
-                let mended = page.ok(json!({
-                    "do": "splice", "file": "a.g7", "splices": fix["splices"], "unit": true,
-                }));
+        let mut version = look["version"].clone();
+        for (n, problem) in look["problems"].as_array().expect("problems").iter().enumerate() {
+            for (f, fix) in problem["fixes"].as_array().expect("fixes").iter().enumerate() {
+                let mended = page.ok(match fix["splices"].as_array() {
+                    Some(splices) => {
+                        json!({ "do": "splice", "file": "a.g7", "splices": splices, "unit": true })
+                    }
+                    None => {
+                        json!({ "do": "mend", "file": "a.g7", "version": version, "problem": n, "fix": f })
+                    }
+                });
                 let same = |look: &Value| {
                     let all = look["problems"].as_array().expect("problems");
                     all.iter()
@@ -326,7 +332,7 @@ fn every_fix_mends_its_problem() {
                 assert!(mended["clean"] == true || look["clean"] == false, "{at}");
                 tried += 1;
                 codes.insert(problem["code"].to_string());
-                page.ok(json!({ "do": "undo", "file": "a.g7" }));
+                version = page.ok(json!({ "do": "undo", "file": "a.g7" }))["version"].clone();
             }
         }
     }
