@@ -48,7 +48,7 @@ fn has(text: &str, part: &str) {
     assert!(flat(text).contains(&flat(part)), "{part} in {text}");
 }
 
-/// Reads a text with the enumeration `Mode`, which has no problems and runs; returns the document as text.
+/// Checks that a text with the enumeration `Mode` becomes this document, without problems, and that it runs.
 #[track_caller]
 fn becomes((variables, action): (&str, &str), expected: (&str, &str)) -> Document {
     let (found, problems) = import(&program(MODE, variables, action));
