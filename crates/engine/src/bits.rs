@@ -184,18 +184,8 @@ impl Tree {
         }
     }
 
-    /// Calls `f` with each member, in ascending order.
-    #[inline(always)]
-    pub(crate) fn each(&self, words: &[u64], mut f: impl FnMut(u32)) {
-        self.each_word(words, |i, mut rest| {
-            while rest != 0 {
-                f(i * 64 + rest.trailing_zeros());
-                rest &= rest - 1;
-            }
-        });
-    }
-
-    /// Calls `f` with each word of members that is not 0, and its place: member `64 i + k` is bit `k` of word `i`.
+    /// Calls `f` with each word that has members, ascending, and with its index: member `64 i + k` is bit `k` of
+    /// word `i`. The only word of a small set comes in any case.
     #[inline(always)]
     pub(crate) fn each_word(&self, words: &[u64], mut f: impl FnMut(u32, u64)) {
         // The words of the lowest level that are not 0 are a set as well, one level up.

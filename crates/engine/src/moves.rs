@@ -112,48 +112,27 @@ fn follow(p: &Program, image: &mut [u64], tagged: u32, on: bool) {
 #[inline]
 pub(crate) fn collect(p: &Program, s: &mut State) {
     if p.sleepers.is_empty() {
-        look_at_all(p, s);
+        look::<false>(p, s);
     } else {
-        look_at_some(p, s);
+        look::<true>(p, s);
     }
 }
 
+/// The work of [`collect`]. With `SLEEP`, steps that sleep are left out, and those whose receptivity is FALSE
+/// sleep from now on until what it reads changes.
 #[inline(always)]
-fn look_at_all(p: &Program, s: &mut State) {
+fn look<const SLEEP: bool>(p: &Program, s: &mut State) {
     let State { image, scratch, steps, .. } = s;
     let image: &[u64] = image;
     // On the stack, these lists need not be written back at each step.
     let (mut fired, mut slow) = (take(&mut scratch.fired), take(&mut scratch.slow));
     slow.clear();
-    let (mut seen, mut last) = (0u32, NONE);
-    steps.each(image, |step| {
-        seen += 1;
-        last = step;
-        match p.hot.get(step as usize) {
-            Some(h) if h.waits_for == NONE => slow.push(step),
-            Some(h) if holds(p, image, h) => fired.push(h.rank),
-            _ => {}
-        }
-    });
-    scratch.lone = if seen == 1 { last } else { NONE };
-    (scratch.fired, scratch.slow) = (fired, slow);
-}
-
-/// Looks at the active steps that do not sleep, and lets those sleep whose receptivity is FALSE until
-/// what it reads changes.
-#[inline(never)]
-fn look_at_some(p: &Program, s: &mut State) {
-    let State { image, scratch, steps, .. } = s;
-    let image: &[u64] = image;
-    let (mut fired, mut slow) = (take(&mut scratch.fired), take(&mut scratch.slow));
-    slow.clear();
-    let (mut seen, mut last) = (0u32, NONE);
+    let (mut several, mut last) = (false, NONE);
     steps.each_word(image, |i, active| {
-        // Two for "more than one".
-        seen = (seen + if active.is_power_of_two() { 1 } else { 2 }).min(2);
+        several |= last != NONE || !active.is_power_of_two();
         last = i * 64 + active.trailing_zeros();
-        let mut tired = 0;
-        let mut rest = active & !word(&scratch.asleep, i as usize);
+        let asleep = if SLEEP { word(&scratch.asleep, i as usize) } else { 0 };
+        let (mut rest, mut tired) = (active & !asleep, 0);
         while rest != 0 {
             let step = i * 64 + rest.trailing_zeros();
             match p.hot.get(step as usize) {
@@ -163,11 +142,11 @@ fn look_at_some(p: &Program, s: &mut State) {
             }
             rest &= rest - 1;
         }
-        if let Some(asleep) = scratch.asleep.get_mut(i as usize) {
+        if SLEEP && let Some(asleep) = scratch.asleep.get_mut(i as usize) {
             *asleep |= tired & p.sleepers.can(i);
         }
     });
-    scratch.lone = if seen == 1 { last } else { NONE };
+    scratch.lone = if several { NONE } else { last };
     (scratch.fired, scratch.slow) = (fired, slow);
 }
 

@@ -111,6 +111,24 @@ pub fn negate(n: Num, v: u64) -> Result<u64, FaultKind> {
     if is_real(n) { Ok(from_real(n, -real(n, v))) } else { fit(n, -whole(n, v)) }
 }
 
+/// Arithmetic between two words of 64 bits, both signed or both unsigned.
+macro_rules! arith_64 {
+    ($op:expr, $x:expr, $y:expr) => {{
+        let (x, y) = ($x, $y);
+        let v = match $op {
+            Arith::Add => x.checked_add(y),
+            Arith::Sub => x.checked_sub(y),
+            Arith::Mul => x.checked_mul(y),
+            Arith::Div | Arith::Mod if y == 0 => return Err(FaultKind::DivisionByZero),
+            Arith::Div => x.checked_div(y),
+            // The remainder of the least number by -1 is 0, though the quotient is too large.
+            Arith::Mod => Some(x.wrapping_rem(y)),
+            Arith::Pow => return Err(FaultKind::Range),
+        };
+        v.ok_or(FaultKind::Overflow)
+    }};
+}
+
 /// Arithmetic between two words of a kind.
 ///
 /// # Errors
@@ -120,39 +138,12 @@ pub fn arith(op: Arith, n: Num, a: u64, b: u64) -> Result<u64, FaultKind> {
     match n {
         Num::F32 => arith_f32(op, f32::from_bits(a as u32), f32::from_bits(b as u32)),
         Num::F64 => arith_f64(op, f64::from_bits(a), f64::from_bits(b)),
-        Num::U64 => arith_u64(op, a, b),
+        Num::U64 => arith_64!(op, a, b),
         Num::Bool | Num::I8 | Num::I16 | Num::I32 | Num::I64 | Num::U8 | Num::U16 | Num::U32 => {
-            fit_short(n, arith_i64(op, a as i64, b as i64)?)
+            let v: Result<i64, FaultKind> = arith_64!(op, a as i64, b as i64);
+            fit_short(n, v?)
         }
     }
-}
-
-#[inline(always)]
-fn arith_i64(op: Arith, x: i64, y: i64) -> Result<i64, FaultKind> {
-    let v = match op {
-        Arith::Add => x.checked_add(y),
-        Arith::Sub => x.checked_sub(y),
-        Arith::Mul => x.checked_mul(y),
-        Arith::Div | Arith::Mod if y == 0 => return Err(FaultKind::DivisionByZero),
-        Arith::Div => x.checked_div(y),
-        // The remainder of the least number by -1 is 0, though the quotient is too large.
-        Arith::Mod => Some(x.wrapping_rem(y)),
-        Arith::Pow => return Err(FaultKind::Range),
-    };
-    v.ok_or(FaultKind::Overflow)
-}
-
-fn arith_u64(op: Arith, x: u64, y: u64) -> Result<u64, FaultKind> {
-    let v = match op {
-        Arith::Add => x.checked_add(y),
-        Arith::Sub => x.checked_sub(y),
-        Arith::Mul => x.checked_mul(y),
-        Arith::Div | Arith::Mod if y == 0 => return Err(FaultKind::DivisionByZero),
-        Arith::Div => x.checked_div(y),
-        Arith::Mod => Some(x % y),
-        Arith::Pow => return Err(FaultKind::Range),
-    };
-    v.ok_or(FaultKind::Overflow)
 }
 
 fn arith_f32(op: Arith, a: f32, b: f32) -> Result<u64, FaultKind> {

@@ -1,6 +1,8 @@
 //! Changes that fix a problem. A problem carries some; others are gestures, which are drafted when somebody
 //! chooses one: a draft reads the file anew, and a file may have hundreds of problems.
 
+use std::collections::BTreeMap;
+
 use g7_edit::{Edit, Gesture, ItemId, Row, Splice};
 use g7_model::{Problem, Said, TextEdit, codes, say};
 
@@ -45,13 +47,18 @@ impl Fix {
 /// The fixes of the problems of a file. What they have in common is found once.
 pub struct Fixes<'f> {
     file: &'f File,
+    /// In the order of the text.
     undeclared: Vec<Undeclared>,
+    /// The index there, by the name: a file can have thousands of such names, each with several problems.
+    by_name: BTreeMap<String, usize>,
 }
 
 impl<'f> Fixes<'f> {
     /// Those of a file.
     pub fn of(file: &'f File) -> Fixes<'f> {
-        Fixes { file, undeclared: undeclared(file.text(), &file.source.document, &file.problems) }
+        let undeclared = undeclared(file.text(), &file.source.document, &file.problems);
+        let by_name = undeclared.iter().zip(0..).map(|(u, n)| (u.name.clone(), n)).collect();
+        Fixes { file, undeclared, by_name }
     }
 
     /// The names that nothing declares.
@@ -79,7 +86,9 @@ impl<'f> Fixes<'f> {
 
     /// The declarations of a name, the likely one first.
     fn declarations(&self, name: &str) -> Vec<(Said, Gesture)> {
-        let Some(new) = self.undeclared.iter().find(|u| u.name == name) else { return Vec::new() };
+        let Some(new) = self.by_name.get(name).and_then(|n| self.undeclared.get(*n)) else {
+            return Vec::new();
+        };
         let mut classes = ["input", "output", "var"];
         classes.sort_by_key(|class| *class != new.class);
         let ty = new.ty.as_str();

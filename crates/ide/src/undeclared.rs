@@ -3,8 +3,8 @@
 //!
 //! # What must hold
 //!
-//! A name is in the list exactly if a problem says that nothing has this name. A use that asks for nothing leaves
-//! the type to the others; without any, it is BOOL.
+//! A name is in the list exactly if a problem says that nothing has this name. Its type comes from those uses that
+//! tell one; if none does, it is BOOL.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -1,8 +1,8 @@
 //! The enumerations and the composed types of the variables of a document, by the paths that name them.
 //!
 //! ```text
-//! sfc, plcopen -> enumerations -> here
-//! standard (enumerations)      -> here
+//! readers: sfc, plcopen -> enumerations -> asks here
+//! writers: standard     -> enumerations -> asks here
 //! ```
 //!
 //! A variable of an enumeration has [`Limits::Of`]; one of a structure or function block of the file names it in `of`.
@@ -39,7 +39,7 @@ pub(crate) struct Variables {
     /// Those of charts, by their names alone: an expansion names variables of its program. Those that several charts
     /// declare otherwise are left out.
     of_charts: HashMap<Box<str>, Declared>,
-    /// The enumerations of variables that are left out there.
+    /// The enumerations of the variables that `of_charts` leaves out.
     pub(crate) unclear: BTreeSet<Box<str>>,
 }
 

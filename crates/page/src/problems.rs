@@ -26,7 +26,7 @@ pub(crate) struct Row {
     /// The ids of the symbols that it marks.
     items: Vec<String>,
     fixes: Vec<Fix>,
-    /// The name whose declaration solves it; the fix without splices that comes first is the likely one.
+    /// The name whose declaration solves the problem. The first fix without splices declares it in the likely way.
     #[serde(skip_serializing_if = "Option::is_none")]
     declares: Option<String>,
 }
@@ -45,7 +45,7 @@ enum Grave {
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(optional_fields))]
 struct Fix {
     title: String,
-    /// Absent for a gesture: the message `mend` executes it.
+    /// The change of the text. A fix that is a gesture has none; the message `mend` executes it.
     #[serde(skip_serializing_if = "Option::is_none")]
     splices: Option<Vec<Change>>,
 }

@@ -186,7 +186,7 @@ export type Failure = {
 /** A change that fixes a problem. */
 export type Fix = {
   title: string;
-  /** Absent for a gesture: the message `mend` executes it. */
+  /** The change of the text. A fix that is a gesture has none; the message `mend` executes it. */
   splices?: Array<Splice>;
 };
 
@@ -661,7 +661,7 @@ export type Problem = {
   /** The ids of the symbols that it marks. */
   items: Array<string>;
   fixes: Array<Fix>;
-  /** The name whose declaration solves it; the fix without splices that comes first is the likely one. */
+  /** The name whose declaration solves the problem. The first fix without splices declares it in the likely way. */
   declares?: string;
 };
 

@@ -39,7 +39,7 @@ struct Part {
     begins: bool,
 }
 
-/// A node behind which the chart does not go on.
+/// A step or transition from which no link leads on, or the last step of a loop without a way out.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 struct End {
     /// The last step in the text that leads to it.

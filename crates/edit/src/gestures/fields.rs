@@ -41,7 +41,7 @@ pub(crate) fn receptivity(d: &mut Draft<'_>, id: &ItemId, text: &str) -> Result<
     Ok(())
 }
 
-/// The text before that of an action, so that it can be read alone.
+/// Stands before the text of an action, so that the parser can read this text alone.
 const HEAD: &str = "chart A {\nstep 1 {\n";
 
 /// Reads the actions in a text; each keeps the text that was typed.

@@ -64,7 +64,7 @@ struct Region {
 }
 
 /// Bridges each region: changes the transitions that stay, and adds to the chosen ones those that must go too.
-/// Returns the transitions that join.
+/// Returns the transitions that now lead from the steps before a region to those behind it.
 pub(crate) fn bridge(chart: &mut Chart, chosen: &mut Chosen) -> BTreeSet<Span> {
     let mut joined = BTreeSet::new();
     for region in regions(chart, chosen) {

@@ -12,7 +12,7 @@ use super::layout_section::{layout, with_layout};
 use crate::draft::Draft;
 use crate::id::ItemId;
 
-/// Gives places to the symbols that have none, in charts that were drawn by hand or are so now.
+/// Gives a place to each symbol that has none, in charts that are drawn by hand, before the gesture or behind it.
 #[inline(never)]
 pub(crate) fn hold(d: &mut Draft<'_>) {
     let source = d.source.document;

@@ -213,8 +213,7 @@ impl<'d> Walk<'d> {
     }
 
     fn binary(&mut self, op: BinaryOp, a: &'d Expr, b: &'d Expr, want: Option<Type>) {
-        let other = |of: &Walk<'_>, e| of.type_of(e);
-        let (left, right) = (other(self, a), other(self, b));
+        let (left, right) = (self.type_of(a), self.type_of(b));
         let (for_a, for_b) = match op.row().operands {
             Operands::Comparison => {
                 let number = if left.is_none() && right.is_none() { Some(Type::Int) } else { None };

@@ -72,13 +72,13 @@ impl Enumeration {
 pub(super) struct Table {
     pub(super) all: Vec<Enumeration>,
     places: HashMap<Box<str>, usize>,
-    /// The values with their type, `Mode#Auto`, each with its enumeration and its place there.
+    /// The values by their names with the type, `Mode#Auto`: the index of the enumeration, and that of the value in it.
     typed: HashMap<String, (usize, usize)>,
     /// The values by their names alone. Several enumerations can have one of that name.
     bare: HashMap<Box<str>, Vec<(usize, usize)>>,
     /// The functions from a value to its number that the file does not declare itself, in upper case.
     conversions: HashMap<String, usize>,
-    /// The enumerations of variables with an address, by that.
+    /// The enumerations of variables that have a direct address, by the address.
     addresses: HashMap<String, usize>,
 }
 
@@ -195,12 +195,12 @@ impl Table {
         }
     }
 
-    /// The place of an enumeration by its name in the file.
+    /// The index in [`Table::all`] of an enumeration, by its name in the file.
     pub(super) fn place(&self, of: &str) -> Option<usize> {
         self.places.get(of).copied()
     }
 
-    /// The place of the enumeration that an item declares.
+    /// The index in [`Table::all`] of the enumeration that a `type` declares.
     pub(super) fn declared_by(&self, t: &VarDecl) -> Option<usize> {
         self.place(&t.names.first()?.text)
     }

@@ -20,9 +20,9 @@ pub(super) enum Kind {
     Value(usize, i128),
     /// A written number.
     Number(i128),
-    /// A whole array of an enumeration.
+    /// A whole array whose elements are of an enumeration.
     Array(usize),
-    /// A variable of an enumeration that is numbers.
+    /// A variable of an enumeration that has become numbers.
     Former(usize),
     Other,
 }
@@ -35,13 +35,13 @@ impl Kind {
         }
     }
 
-    /// The enumeration that is meant by a bare value beside it.
+    /// The enumeration of which a value without a type is meant, if it stands beside this expression.
     pub(super) fn hint(self) -> Option<usize> {
         if let Kind::Former(own) = self { Some(own) } else { self.of() }
     }
 }
 
-/// A place for an expression.
+/// The form that the place of an expression asks for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Wanted {
     /// A value of this enumeration.
@@ -55,7 +55,7 @@ pub(super) enum Wanted {
 pub(super) struct Walker<'a> {
     pub(super) table: &'a Table,
     pub(super) variables: &'a Variables,
-    /// The enumerations that are numbers.
+    /// The enumerations that have become numbers.
     numbers: &'a BTreeMap<usize, (Span, Why)>,
     /// The enumerations that must be numbers too, each with the first place that asks for it.
     pub(super) found: BTreeMap<usize, (Span, Why)>,
@@ -83,7 +83,7 @@ impl<'a> Walker<'a> {
         self.expect_near(e, wanted, None);
     }
 
-    /// The same for a place of which the enumeration is known, though it may be numbers.
+    /// The same where the enumeration of the place is known. It may have become numbers.
     pub(super) fn expect_near(&mut self, e: &mut Expr, wanted: Wanted, hint: Option<usize>) {
         let hint = if let Wanted::Of(own) = wanted { Some(own) } else { hint };
         let kind = self.typed(e, hint);
@@ -94,7 +94,7 @@ impl<'a> Walker<'a> {
         of.filter(|own| self.is_type(*own)).map_or(otherwise, Wanted::Of)
     }
 
-    /// False for an enumeration that is numbers.
+    /// True if an enumeration stays a type; false if its variables become numbers.
     fn is_type(&self, own: usize) -> bool {
         !self.numbers.contains_key(&own)
     }
@@ -295,7 +295,7 @@ impl<'a> Walker<'a> {
         Kind::Of(own)
     }
 
-    /// Notes a path that goes on behind a variable of an enumeration, to a bit of it.
+    /// An enumeration becomes numbers if a path names a bit of one of its variables.
     pub(super) fn bit(&mut self, names: &[Name], at: Span) {
         let Some((_, before)) = names.split_last() else { return };
         let found = if before.is_empty() { Kind::Other } else { self.variable(before) };
@@ -395,7 +395,7 @@ impl<'a> Walker<'a> {
     }
 }
 
-/// The function of a call that gives one of its inputs.
+/// MOVE, SEL or MUX, if a call names one of these: their result is one of their inputs.
 fn choice(e: &Expr) -> Option<StandardFunction> {
     use StandardFunction as F;
     let ExprKind::Call(path, _) = &e.kind else { return None };

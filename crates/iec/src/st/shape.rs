@@ -72,7 +72,7 @@ pub(crate) fn no_array() -> Said {
 /// The values of an enumeration, each with the number that is written behind it.
 pub(crate) type Values = Vec<(Name, Option<Expr>)>;
 
-/// Facts of an enumeration that its variables need.
+/// An enumeration, as far as declarations of its variables need it.
 #[derive(Clone, Debug)]
 pub(crate) struct Enumeration {
     pub(crate) name: Name,
