@@ -242,6 +242,11 @@ impl Tree {
         }
     }
 
+    /// True if `i` is the only member.
+    pub(crate) fn has_only(&self, words: &[u64], i: u32) -> bool {
+        self.next(words, i + 1).is_none() && self.next(words, 0) == Some(i)
+    }
+
     /// The smallest member `>= from`. Members may come and go between calls.
     pub(crate) fn next(&self, words: &[u64], from: u32) -> Option<u32> {
         let mut i = from;
@@ -355,6 +360,7 @@ mod tests {
                 }
                 assert_eq!(tree.next(&words, i), set.range(i..).next().copied());
                 assert_eq!(tree.is_empty(&words), set.is_empty());
+                assert_eq!(tree.has_only(&words, i), set.len() == 1 && set.contains(&i));
             }
             let mut walk = Walk::new(&tree, &words);
             let mut seen = Vec::new();

@@ -214,6 +214,7 @@ pub(crate) fn activate(p: &Program, s: &mut State, step: u32) {
         turn(s, step, false);
     }
     tree.insert(&mut s.image, step);
+    s.scratch.rest.stir(step);
     let now = s.clock(p) as u64;
     s.set(p.layout.stamp(step) as usize, now);
     if p.tables.rules.scan_clock {

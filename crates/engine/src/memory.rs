@@ -61,8 +61,8 @@ fn log(s: &mut State, addr: Addr, old: u64) {
 /// Marks the watches that read a word as to be evaluated, and wakes the steps that wait for it.
 #[inline]
 pub(crate) fn notice(p: &Program, s: &mut State, addr: Addr) {
-    if !p.sleepers.is_empty() {
-        p.sleepers.wake(&mut s.scratch.asleep, addr);
+    if s.scratch.rest.is_on() {
+        p.sleepers.wake(&mut s.scratch.rest, addr);
     }
     if p.tables.word_watches.is_empty() {
         return;

@@ -2,6 +2,7 @@
 //! which nothing but one token can act. They have the same meaning as `pass.rs` and `change.rs`,
 //! but leave out what cannot occur. `tests/all/ways.rs` runs the same charts with and without them.
 
+use alloc::vec::Vec;
 use core::mem::take;
 
 use crate::bits::{Tree, bit, set_bit, word};
@@ -11,6 +12,7 @@ use crate::layout::head;
 use crate::program::Program;
 use crate::rows::{Hot, Parts, Shift};
 use crate::scratch::Scratch;
+use crate::sleepers::Rest;
 use crate::state::State;
 use crate::tables::NONE;
 
@@ -86,10 +88,12 @@ fn shift<const TAGS: bool>(p: &Program, image: &mut [u64], at: &Shift, now: u64,
 #[inline(always)]
 fn pass_on<const TAGS: bool>(p: &Program, s: &mut State, now: u64, kept: u64) {
     let State { image, scratch, steps, .. } = s;
-    for m in scratch.fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
+    let Scratch { fired, rest, .. } = scratch;
+    for m in fired.iter().filter_map(|i| p.moves.get(*i as usize)) {
         // Another token of this pass may have gone there: contributions count once.
         let again = TAGS && steps.contains(image, m.to);
         steps.hand_on(image, m.from, m.to);
+        rest.stir(m.to);
         let left = Shift { to_output: NONE, ..m.shift };
         shift::<TAGS>(p, image, if again { &left } else { &m.shift }, now, kept);
     }
@@ -111,43 +115,70 @@ fn follow(p: &Program, image: &mut [u64], tagged: u32, on: bool) {
 /// Collects the clearable transitions behind the hot steps, and the other active steps in `slow`.
 #[inline]
 pub(crate) fn collect(p: &Program, s: &mut State) {
-    if p.sleepers.is_empty() {
-        look::<false>(p, s);
+    let State { image, scratch, steps, .. } = s;
+    // On the stack, these lists need not be written back at each step.
+    let mut found = Found { fired: take(&mut scratch.fired), slow: take(&mut scratch.slow) };
+    found.slow.clear();
+    scratch.lone = if scratch.rest.is_on() {
+        look_at_stirred(p, image, steps, &mut found, &mut scratch.rest)
     } else {
-        look::<true>(p, s);
-    }
+        look(p, image, steps, &mut found, &mut scratch.rest)
+    };
+    (scratch.fired, scratch.slow) = (found.fired, found.slow);
 }
 
-/// The work of [`collect`]. With `SLEEP`, steps that sleep are left out, and those whose receptivity is FALSE
-/// sleep from now on until what it reads changes.
-#[inline(always)]
-fn look<const SLEEP: bool>(p: &Program, s: &mut State) {
-    let State { image, scratch, steps, .. } = s;
-    let image: &[u64] = image;
-    // On the stack, these lists need not be written back at each step.
-    let (mut fired, mut slow) = (take(&mut scratch.fired), take(&mut scratch.slow));
-    slow.clear();
-    let (mut several, mut last) = (false, NONE);
-    steps.each_word(image, |i, active| {
-        several |= last != NONE || !active.is_power_of_two();
-        last = i * 64 + active.trailing_zeros();
-        let asleep = if SLEEP { word(&scratch.asleep, i as usize) } else { 0 };
-        let (mut rest, mut tired) = (active & !asleep, 0);
+/// The transitions that [`collect`] has found to be clearable, and the steps for a closer look.
+struct Found {
+    fired: Vec<u32>,
+    slow: Vec<u32>,
+}
+
+impl Found {
+    /// Judges some of the 64 steps of word `i`. Tells those whose receptivity is FALSE.
+    #[inline(always)]
+    fn judge(&mut self, p: &Program, image: &[u64], i: u32, steps: u64) -> u64 {
+        let (mut rest, mut closed) = (steps, 0);
         while rest != 0 {
             let step = i * 64 + rest.trailing_zeros();
             match p.hot.get(step as usize) {
-                Some(h) if h.waits_for == NONE => slow.push(step),
-                Some(h) if holds(p, image, h) => fired.push(h.rank),
-                _ => tired |= rest & rest.wrapping_neg(),
+                Some(h) if h.waits_for == NONE => self.slow.push(step),
+                Some(h) if holds(p, image, h) => self.fired.push(h.rank),
+                _ => closed |= rest & rest.wrapping_neg(),
             }
             rest &= rest - 1;
         }
-        if SLEEP && let Some(asleep) = scratch.asleep.get_mut(i as usize) {
-            *asleep |= tired & p.sleepers.can(i);
-        }
+        closed
+    }
+}
+
+/// The work of [`collect`] where no step sleeps. Returns the only active step, or `NONE`.
+#[inline(always)]
+fn look(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut Rest) -> u32 {
+    let (mut several, mut last, mut waiting) = (false, NONE, 0);
+    steps.each_word(image, |i, active| {
+        several |= last != NONE || !active.is_power_of_two();
+        last = i * 64 + active.trailing_zeros();
+        waiting += u32::from(found.judge(p, image, i, active) != 0);
     });
-    scratch.lone = if several { NONE } else { last };
-    (scratch.fired, scratch.slow) = (fired, slow);
+    rest.begin(waiting);
+    if several { NONE } else { last }
+}
+
+/// As [`look`], where steps sleep. Where one token alone is left, sleep ends.
+#[inline(always)]
+fn look_at_stirred(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut Rest) -> u32 {
+    let (mut several, mut last) = (false, NONE);
+    let active = |i| word(image, (steps.base() + i) as usize);
+    rest.look(&p.sleepers, active, |i, awake| {
+        several |= last != NONE || !awake.is_power_of_two();
+        last = i * 64 + awake.trailing_zeros();
+        found.judge(p, image, i, awake)
+    });
+    if several || last == NONE || !steps.has_only(image, last) {
+        return NONE;
+    }
+    rest.end();
+    last
 }
 
 /// True if all transitions that clear are plain, and nothing else is to be done in the pass.
@@ -163,7 +194,7 @@ pub(crate) fn are_plain(p: &Program, scratch: &Scratch) -> bool {
 /// Clears the transitions of a pass in which all are plain. Tells whether a step changed.
 pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
     let State { image, scratch, steps, .. } = s;
-    let Scratch { fired, on_mark, .. } = scratch;
+    let Scratch { fired, on_mark, rest, .. } = scratch;
     let now = word(image, head::NOW);
     let kept = kept(p);
     // After a lone token has moved by one transition, its place is known.
@@ -184,7 +215,7 @@ pub(crate) fn clear(p: &Program, s: &mut State) -> bool {
         }
         return any;
     }
-    let mut area = Area { image, steps: *steps, now, kept, changed: false };
+    let mut area = Area { image, steps: *steps, rest, now, kept, changed: false };
     crowded(p, &mut area, fired, on_mark);
     area.changed
 }
@@ -235,6 +266,7 @@ fn parts(p: &Program) -> Parts<'_> {
 struct Area<'a> {
     image: &'a mut [u64],
     steps: Tree,
+    rest: &'a mut Rest,
     now: u64,
     kept: u64,
     changed: bool,
@@ -245,6 +277,7 @@ impl Area<'_> {
     fn on(&mut self, p: &Program, step: u32) -> bool {
         let new = self.steps.add(self.image, step);
         if new {
+            self.rest.stir(step);
             let to = parts(p).entering(step);
             shift::<true>(p, self.image, &to, self.now, self.kept);
             self.changed = true;

@@ -10,6 +10,7 @@ use crate::pass::evolve;
 use crate::program::Program;
 use crate::rules::PATIENCE;
 use crate::run::{run, value};
+use crate::sleepers::Rest;
 use crate::state::State;
 use crate::tables::NONE;
 use crate::{blocks, counts, moves, watch};
@@ -91,10 +92,10 @@ fn begin_short(p: &Program, s: &mut State, inputs: &[u64], now: i64) -> Begun {
         if !brisk || p.watches_inputs && watched(p, area, inputs) {
             return Begun::No;
         }
-        if p.sleepers.is_empty() {
-            take(area, inputs);
+        if s.scratch.rest.is_on() {
+            take_each(p, area, &mut s.scratch.rest, inputs);
         } else {
-            take_each(p, area, &mut s.scratch.asleep, inputs);
+            take(area, inputs);
         }
     }
     tick(s, now.wrapping_sub(before), now);
@@ -114,14 +115,14 @@ fn take(area: &mut [u64], inputs: &[u64]) {
 
 /// Takes the inputs over, and wakes the steps that wait for one that changes.
 #[inline(never)]
-fn take_each(p: &Program, area: &mut [u64], asleep: &mut [u64], inputs: &[u64]) {
+fn take_each(p: &Program, area: &mut [u64], rest: &mut Rest, inputs: &[u64]) {
     if area == inputs {
         return;
     }
     for ((i, old), new) in (p.tables.inputs.start..).zip(area).zip(inputs) {
         if *old != *new {
             *old = *new;
-            p.sleepers.wake(asleep, Addr(i));
+            p.sleepers.wake(rest, Addr(i));
         }
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Nothing in it carries anything from one scan to the next, except the reports of
 //! the latest scan and notes that save time ([`Scratch::quiet`],
-//! [`Scratch::lone`], [`Scratch::asleep`] and [`Scratch::timers_due`]), without which the next scan has the same result.
+//! [`Scratch::lone`], [`Scratch::rest`] and [`Scratch::timers_due`]), without which the next scan has the same result.
 
 use alloc::boxed::Box;
 use alloc::vec;
@@ -10,6 +10,7 @@ use alloc::vec::Vec;
 
 use crate::ops::Addr;
 use crate::program::Program;
+use crate::sleepers::Rest;
 use crate::stack::Stack;
 use crate::tables::NONE;
 
@@ -24,8 +25,8 @@ pub(crate) struct Scratch {
     pub(crate) lone: u32,
     /// Active steps whose transitions need a closer look (`moves`).
     pub(crate) slow: Vec<u32>,
-    /// Steps whose receptivity is known to be FALSE, a bit each (`sleepers`).
-    pub(crate) asleep: Box<[u64]>,
+    /// Steps that a pass need not look at (`sleepers`).
+    pub(crate) rest: Rest,
     /// Steps marked to be activated, and to be deactivated.
     pub(crate) on: Vec<u32>,
     pub(crate) off: Vec<u32>,
@@ -134,7 +135,7 @@ impl Scratch {
             timers_due: i64::MIN,
             worked: true,
             slow: Vec::with_capacity(steps),
-            asleep: vec![0; p.sleepers.words()].into_boxed_slice(),
+            rest: p.sleepers.rest(),
             on: Vec::with_capacity(2 * steps),
             off: Vec::with_capacity(2 * steps),
             on_mark: bits(steps),
@@ -255,7 +256,7 @@ impl Scratch {
         self.quiet = false;
         self.worked = true;
         self.lone = NONE;
-        self.asleep.fill(0);
+        self.rest.end();
         self.timers_due = i64::MIN;
         self.first_pass = false;
         self.any_blocked = false;

@@ -4,10 +4,15 @@
 //! In a machine of 200 drives most drives wait for an input. A pass that asks each of them costs
 //! what the whole machine costs, though only one drive moves.
 //!
+//! Sleep begins where many active steps wait, and ends where it does not pay (`Rest::on`): a chart with a few
+//! tokens goes the way that it would go without.
+//!
 //! # Invariants
 //!
 //! - That a step sleeps says only that its receptivity is FALSE, so it holds whether or not the step is
-//!   active, and nothing need be done when it is activated or deactivated.
+//!   active.
+//! - A word of 64 steps with an active one that does not sleep is stirred: whatever activates a step or wakes
+//!   one tells [`Rest`]. A pass looks at stirred words alone.
 //! - Every change of a variable that such a receptivity reads goes through
 //!   [`crate::memory::notice`] or wakes the steps itself. Outputs that follow a step directly are written
 //!   without that, and so are locals: a step that waits for one of these never sleeps.
@@ -24,14 +29,22 @@ use crate::tables::{NONE, Receptivity, Tables};
 /// With fewer such steps it is cheaper to look at each.
 const FEWEST: usize = 64;
 
-/// The steps that can sleep, and the words that wake them.
+/// Sleep begins where a pass finds steps that wait in this many words of 64 steps.
+const MANY: u32 = 8;
+
+/// Sleep ends where a variable changes for which steps in more words of 64 wait: to wake them would cost more
+/// than to look at those that are active.
+const CROWD: usize = 64;
+
+/// The steps that can sleep, and the variables that wake them.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sleepers {
     /// The steps that can sleep, a bit each; empty where there are too few.
     can: Box<[u64]>,
-    /// For each word of the variable area, where its steps begin in `steps`; one more at the end.
+    /// For each word of the variable area, where its rows begin in `wakes`; one more at the end.
     of_word: Box<[u32]>,
-    steps: Box<[u32]>,
+    /// The steps that wait for it: the index of a word of 64 steps, and the bits of these there.
+    wakes: Box<[(u32, u64)]>,
 }
 
 impl Sleepers {
@@ -54,13 +67,21 @@ impl Sleepers {
             return Sleepers::default();
         }
         pairs.sort_unstable();
-        pairs.dedup();
         let mut can = vec![0; hot.len().div_ceil(64)];
         let mut of_word = vec![0; t.init.len() + 1];
-        for (word, step) in &pairs {
-            set_bit(&mut can, 0, *step, true);
-            if let Some(n) = of_word.get_mut(*word as usize + 1) {
-                *n += 1;
+        let mut wakes: Vec<(u32, u64)> = Vec::new();
+        let mut latest = None;
+        for (word, step) in pairs {
+            set_bit(&mut can, 0, step, true);
+            if latest != Some((word, step / 64)) {
+                latest = Some((word, step / 64));
+                wakes.push((step / 64, 0));
+                if let Some(n) = of_word.get_mut(word as usize + 1) {
+                    *n += 1;
+                }
+            }
+            if let Some((_, bits)) = wakes.last_mut() {
+                *bits |= 1 << (step % 64);
             }
         }
         let mut begin = 0u32;
@@ -68,36 +89,108 @@ impl Sleepers {
             begin += *n;
             *n = begin;
         }
-        Sleepers {
-            can: can.into(),
-            of_word: of_word.into(),
-            steps: pairs.into_iter().map(|(_, step)| step).collect(),
-        }
+        Sleepers { can: can.into(), of_word: of_word.into(), wakes: wakes.into() }
     }
 
-    /// Words of bits that say which steps sleep; 0 where none can.
-    pub(crate) fn words(&self) -> usize {
-        self.can.len()
-    }
-
-    #[inline(always)]
-    pub(crate) fn is_empty(&self) -> bool {
-        self.can.is_empty()
+    /// A new state, in which nobody sleeps.
+    pub(crate) fn rest(&self) -> Rest {
+        let words = self.can.len();
+        Rest { on: false, asleep: vec![0; words].into(), stirred: vec![0; words.div_ceil(64)].into() }
     }
 
     /// The steps that can sleep among the 64 of a word.
     #[inline(always)]
-    pub(crate) fn can(&self, word: u32) -> u64 {
+    fn can(&self, word: u32) -> u64 {
         self.can.get(word as usize).copied().unwrap_or(0)
     }
 
     /// Wakes the steps that wait for a word of the variable area.
     #[inline]
-    pub(crate) fn wake(&self, asleep: &mut [u64], addr: Addr) {
+    pub(crate) fn wake(&self, rest: &mut Rest, addr: Addr) {
         let at = addr.0 as usize;
         let (Some(&from), Some(&to)) = (self.of_word.get(at), self.of_word.get(at + 1)) else { return };
-        for step in self.steps.get(from as usize..to as usize).unwrap_or(&[]) {
-            set_bit(asleep, 0, *step, false);
+        let wakes = self.wakes.get(from as usize..to as usize).unwrap_or(&[]);
+        if wakes.len() > CROWD {
+            rest.on = false;
+            return;
+        }
+        for (i, steps) in wakes {
+            if let Some(asleep) = rest.asleep.get_mut(*i as usize) {
+                *asleep &= !steps;
+                set_bit(&mut rest.stirred, 0, *i, true);
+            }
+        }
+    }
+}
+
+/// Who sleeps in a state; without words where no step can.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Rest {
+    /// Steps sleep. If not, nothing else here means anything.
+    on: bool,
+    /// Steps whose receptivity is known to be FALSE, a bit each.
+    asleep: Box<[u64]>,
+    /// The words of 64 steps that a pass must look at, a bit each.
+    stirred: Box<[u64]>,
+}
+
+impl Rest {
+    #[inline(always)]
+    pub(crate) fn is_on(&self) -> bool {
+        self.on
+    }
+
+    /// Tells that a step was activated.
+    #[inline(always)]
+    pub(crate) fn stir(&mut self, step: u32) {
+        if self.on {
+            set_bit(&mut self.stirred, 0, step / 64, true);
+        }
+    }
+
+    /// Lets all be awake.
+    pub(crate) fn end(&mut self) {
+        self.on = false;
+    }
+
+    /// Lets steps sleep from now on, where a pass has found that so many words of 64 have one that waits.
+    #[inline(always)]
+    pub(crate) fn begin(&mut self, waiting: u32) {
+        if waiting >= MANY && !self.asleep.is_empty() {
+            self.stir_all();
+        }
+    }
+
+    #[inline(never)]
+    fn stir_all(&mut self) {
+        self.on = true;
+        self.asleep.fill(0);
+        self.stirred.fill(u64::MAX);
+    }
+
+    /// Calls `judge` with the index of each stirred word and its active steps that do not sleep. It returns
+    /// those of them whose receptivity is FALSE, which sleep from now on if they can.
+    #[inline(always)]
+    pub(crate) fn look(
+        &mut self,
+        can: &Sleepers,
+        active: impl Fn(u32) -> u64,
+        mut judge: impl FnMut(u32, u64) -> u64,
+    ) {
+        for (k, stirred) in (0u32..).zip(&mut self.stirred) {
+            let mut words = *stirred;
+            while words != 0 {
+                let i = k * 64 + words.trailing_zeros();
+                let awake = self.asleep.get_mut(i as usize).map_or(0, |asleep| {
+                    let active = active(i);
+                    *asleep |= judge(i, active & !*asleep) & can.can(i);
+                    active & !*asleep
+                });
+                if awake == 0 {
+                    *stirred &= !(words & words.wrapping_neg());
+                }
+                words &= words - 1;
+            }
         }
     }
 }
