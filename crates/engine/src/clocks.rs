@@ -7,16 +7,17 @@
 //! time counts as reading it without end.
 
 use alloc::boxed::Box;
+use alloc::collections::BTreeSet;
 use alloc::vec;
 use alloc::vec::Vec;
 
 use crate::bits::word;
 use crate::block_words::TIMED;
-use crate::check::writes;
 use crate::layout::{Layout, head};
-use crate::ops::{Addr, Arith, Block, Builtin, Code, Num, Op};
+use crate::ops::{Arith, Block, Builtin, Code, Num, Op};
+use crate::reached::{Reached, does_write};
 use crate::rules::Rules;
-use crate::tables::{NONE, Receptivity, Rows, Tables};
+use crate::tables::{NONE, Rows, Tables};
 
 /// The word of the header in which step times count: ns, or scans under the scan clock.
 #[inline(always)]
@@ -140,6 +141,7 @@ pub(crate) struct Reading<'a> {
     pub(crate) t: &'a Tables,
     /// Instructions that some jump leads to.
     targets: Vec<bool>,
+    reached: Reached,
 }
 
 impl Reading<'_> {
@@ -152,7 +154,7 @@ impl Reading<'_> {
                 *target = true;
             }
         }
-        Reading { t, targets }
+        Reading { t, targets, reached: Reached::new(t) }
     }
 
     /// The instruction at a place that is reached from the one before it alone.
@@ -261,9 +263,10 @@ impl Reading<'_> {
     /// The timers that are called: first word, block, cap.
     fn instances(&self) -> Vec<(u32, Block, i64)> {
         let mut found: Vec<(u32, Block, i64)> = Vec::new();
+        let mut seen = BTreeSet::new();
         for op in &self.t.code {
             let Op::Fb(block @ (Block::Ton | Block::Tof | Block::Tp), base) = *op else { continue };
-            if !found.iter().any(|f| f.0 == base.0 && f.1 == block) {
+            if seen.insert((base.0, block as u8)) {
                 found.push((base.0, block, self.most(base.0 + 1).unwrap_or(ENDLESS)));
             }
         }
@@ -279,10 +282,11 @@ impl Reading<'_> {
     pub(crate) fn values(&self, word: u32) -> Option<Vec<i64>> {
         let t = self.t;
         let mut values = vec![t.init.get(word as usize).map(|v| *v as i64)?];
-        if self.is_tied(word) {
+        if self.reached.is_tied(word) {
             return None;
         }
-        for (pc, op) in t.code.iter().enumerate().filter(|(_, op)| does_write(op, word)) {
+        for pc in self.reached.places(word) {
+            let Some(op) = t.code.get(pc).filter(|op| does_write(op, word)) else { continue };
             let before = pc.checked_sub(1).and_then(|b| t.code.get(b));
             match (op, before) {
                 // A call leaves the times that it is given as they are.
@@ -294,19 +298,6 @@ impl Reading<'_> {
         Some(values)
     }
 
-    /// True if a word is an input, an output, or follows a step or a block.
-    fn is_tied(&self, word: u32) -> bool {
-        let t = self.t;
-        let within = |r: Rows| (r.start..r.end).contains(&word);
-        let counts = t.counts.map(|(a, b)| [a, b]).into_iter().flatten().chain(t.limits.map(|l| l.0));
-        within(t.inputs)
-            || within(t.outputs)
-            || within(t.locals)
-            || t.steps.iter().any(|s| s.direct.0 == word)
-            || t.blocks.iter().any(|b| b.output.0 == word)
-            || counts.into_iter().any(|a| a.0 == word)
-    }
-
     /// True if anything but calls of a timer reaches the words of its memory.
     fn is_exposed(&self, (base, block, _): (u32, Block, i64)) -> bool {
         (base + 4..base + 6).any(|word| self.is_reached(base, block, word))
@@ -315,10 +306,6 @@ impl Reading<'_> {
     /// True if anything but calls of the timer at `base` reaches this word of it. Strings are left out:
     /// none lies over an instance.
     pub(crate) fn is_reached(&self, base: u32, block: Block, word: u32) -> bool {
-        let guarded = self.t.transitions.iter().any(|t| match t.receptivity {
-            Receptivity::Word(a) | Receptivity::NotWord(a) => a.0 == word,
-            Receptivity::True | Receptivity::Code(_) => false,
-        });
         let reached = |op: &Op| match *op {
             Op::Fb(b, at) if b == block && at.0 == base => false,
             Op::Fb(b, at) => (at.0..at.0 + b.words()).contains(&word),
@@ -326,17 +313,7 @@ impl Reading<'_> {
             Op::LoadAt { base: at, len } => (at.0..at.0.saturating_add(len)).contains(&word),
             _ => does_write(op, word),
         };
-        guarded || self.is_tied(word) || self.t.code.iter().any(reached)
+        let mut ops = self.reached.places(word).filter_map(|pc| self.t.code.get(pc));
+        self.reached.is_guard(word) || self.reached.is_tied(word) || ops.any(reached)
     }
-}
-
-/// True if an instruction can write a word of the variable area.
-fn does_write(op: &Op, word: u32) -> bool {
-    let first = match *op {
-        Op::Store(a) | Op::Random(a) | Op::Fb(_, a) => a,
-        Op::StoreAt { base, .. } => base,
-        Op::StoreText { to, .. } | Op::Text { to, .. } | Op::ToText { to, .. } => to,
-        _ => Addr(NONE),
-    };
-    first.0 != NONE && (first.0..first.0.saturating_add(writes(op) as u32)).contains(&word)
 }

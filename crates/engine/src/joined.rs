@@ -49,6 +49,8 @@ pub(crate) enum Compute {
     Convert(Num, Num),
     /// A cell of an array, by its place: the row of [`Joined::arrays`].
     Cell(u32),
+    /// The same, by its index and the lower bound: two instructions.
+    Element(u32),
     /// Nothing here: the instruction stands alone, and does with the stack what it does.
     Alone,
 }
@@ -169,7 +171,8 @@ impl Joined {
             *slot = operand;
             lead = k + 1;
         }
-        let (compute, wanted, own) = op(lead).map_or((Compute::Alone, 0, 1), |op| self.computation(op));
+        let (compute, wanted, own) =
+            op(lead).map_or((Compute::Alone, 0, 1), |first| self.computation(first, op(lead + 1)));
         if lead > wanted {
             // The instruction wants fewer operands, or takes them from the stack: the first is pushed.
             let operands = [given[0], Operand::TOP, Operand::TOP];
@@ -200,11 +203,15 @@ impl Joined {
         row.map_or(u32::MAX, |row| row as u32)
     }
 
-    /// The computation of an instruction, the number of its operands, and 1 where it is more than a sink.
-    fn computation(&self, op: Op) -> (Compute, usize, usize) {
-        match op {
-            Op::LoadAt { .. } => (Compute::Cell(self.array(op)), 1, 1),
-            op => computation(op),
+    /// The computation of an instruction, the number of its operands, and the number of instructions that are
+    /// more than a sink.
+    fn computation(&self, op: Op, next: Option<Op>) -> (Compute, usize, usize) {
+        match (op, next) {
+            (Op::LoadAt { .. }, _) => (Compute::Cell(self.array(op)), 1, 1),
+            (Op::Arith(Arith::Sub, Num::I64), Some(load @ Op::LoadAt { .. })) => {
+                (Compute::Element(self.array(load)), 2, 2)
+            }
+            (op, _) => computation(op),
         }
     }
 

@@ -63,6 +63,7 @@ pub mod number;
 mod ops;
 mod pass;
 mod program;
+mod reached;
 mod reads;
 mod rows;
 mod rules;

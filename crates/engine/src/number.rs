@@ -25,6 +25,12 @@ fn bounds(n: Num) -> (i128, i128) {
     if n == Num::U64 { (0, u64::MAX.into()) } else { (least.into(), most.into()) }
 }
 
+/// True if each value of a kind is a value of another one and has the same word there.
+pub fn widens(from: Num, to: Num) -> bool {
+    let ((least, most), (low, high)) = (bounds(from), bounds(to));
+    from == to || !is_real(from) && !is_real(to) && low <= least && most <= high
+}
+
 /// The number that a word of an integer kind stands for.
 fn whole(n: Num, v: u64) -> i128 {
     match n {

@@ -9,7 +9,7 @@ use crate::joined::{Compute, Operand, Sink, Step};
 use crate::layout::{REQUESTS, START, head};
 use crate::memory::{read, write};
 use crate::number::{self, arith, call, compare, convert, limit, negate, truncate};
-use crate::ops::{Addr, Code, GroupId, Num, Op, Service, WORK};
+use crate::ops::{Addr, Arith, Code, GroupId, Num, Op, Service, WORK};
 use crate::program::Program;
 use crate::state::State;
 use crate::tables::{NONE, Receptivity};
@@ -172,6 +172,12 @@ fn make(p: &Program, s: &mut State, step: &Step, pc: u32) -> Result<u32, Fault> 
         Compute::Cell(row) => {
             let place = take(p, s, operands[0]);
             read(s, cell(p, row, place).map_err(fault)?)
+        }
+        Compute::Element(row) => {
+            let (index, low) = take_two(p, s, operands);
+            let place = arith(Arith::Sub, Num::I64, index, low).map_err(fault)?;
+            let at = Some(pc + u32::from(step.lead) + 1);
+            read(s, cell(p, row, place).map_err(|kind| Fault { kind, at })?)
         }
         Compute::Alone => return alone(p, s, pc),
     };

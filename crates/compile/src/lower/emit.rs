@@ -3,6 +3,7 @@
 //! Code is written into a [`Buf`] with jumps counted from its own start; `pieces`
 //! moves it to its place in the table.
 
+use g7_engine::number::widens;
 use g7_engine::{Addr, Builtin, Op};
 use g7_model::{Span, Type};
 
@@ -131,7 +132,8 @@ impl Buf {
             ExprKind::Due(period) => self.op(Op::Due(*period), at),
             ExprKind::Not(x) => self.one(x, Op::Not, at),
             ExprKind::Neg(n, x) => self.one(x, Op::Neg(num(*n)), at),
-            ExprKind::Convert(from, to, x) if num(*from) == num(*to) => self.expr(x),
+            // A word of a whole number is the same in each kind that has its value.
+            ExprKind::Convert(from, to, x) if widens(num(*from), num(*to)) => self.expr(x),
             ExprKind::Convert(from, to, x) if transfers(*from, *to) => {
                 self.one(x, Op::Call(Builtin::Transfer, num(*to), 1), at);
             }

@@ -270,8 +270,11 @@ impl For {
     /// One more step stays within the variable's type.
     fn has_next(&self, up: bool) -> Expr {
         let (least, most) = self.ty.bounds().unwrap_or((i64::MIN.into(), i64::MAX.into()));
-        let end = self.constant(if up { most } else { least });
-        let room = end.arith(Arith::Sub, self.ty, self.step(), self.at);
+        let end = if up { most } else { least };
+        let room = match self.fixed {
+            Some(step) => self.constant(end - i128::from(step)),
+            None => self.constant(end).arith(Arith::Sub, self.ty, self.step(), self.at),
+        };
         let c = if up { Cmp::Le } else { Cmp::Ge };
         self.word(self.var).compare(c, self.ty, room, self.at)
     }

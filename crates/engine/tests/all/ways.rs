@@ -447,6 +447,31 @@ fn steps_that_sleep_are_woken() {
     assert!(moved > 50_000 && still > 1_000, "{moved} clearings, {still} scans without");
 }
 
+/// Many steps sleep; then all their tokens meet in one step, and go on alone round a ring of other steps. A step
+/// that is activated from outside finds the token where it is.
+#[test]
+fn sleep_ends_with_the_last_token() {
+    let (many, ring) = (700, 200);
+    let mut arcs: Vec<Arc> = (0..many).map(|from| (vec![from], vec![many], Some(0))).collect();
+    arcs.extend((0..ring).map(|k| (vec![many + k], vec![many + (k + 1) % ring], Some(1))));
+    let initial: Vec<u32> = (0..many).collect();
+    let tables = chart(Rules::IEC61131, many + ring, 3, &initial, &arcs);
+    let long = roundabout(&tables);
+    let mut both = Both::new(tables, long);
+    let mut tokens = Vec::new();
+    for k in 0..170 {
+        both.inputs = [k == 5, k > 5, false].map(u64::from).to_vec();
+        if k == 155 {
+            both.set_step(StepId(3), true);
+        }
+        let [x, y] = both.scan(k);
+        assert_eq!(x, y, "scan {k}");
+        assert_eq!(memory(&both.a), memory(&both.b), "scan {k}");
+        tokens.push(both.a.active().count());
+    }
+    assert_eq!([tokens[4], tokens[5], tokens[154], tokens[169]], [700, 1, 1, 2]);
+}
+
 /// The active steps, their times where these are read, and the outputs.
 fn shown(p: &Program, s: &State) -> (Vec<(StepId, i64)>, Vec<u64>) {
     let read = |step| p.tables().code.contains(&Op::StepTime(step));
