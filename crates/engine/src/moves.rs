@@ -165,7 +165,7 @@ fn look(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut 
 }
 
 /// As [`look`], where steps sleep. Where one token alone is left, sleep ends.
-#[inline(always)]
+#[inline(never)]
 fn look_at_stirred(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut Rest) -> u32 {
     let (mut several, mut last) = (false, NONE);
     let active = |i| word(image, (steps.base() + i) as usize);
