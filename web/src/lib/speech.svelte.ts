@@ -1,0 +1,36 @@
+// What screen readers are told of changes that nobody asked for: one region of the page, whose text changes about once
+// a second at most. What happens meanwhile is told together.
+
+/** The least time between two messages, in ms. */
+const GAP = 1200;
+
+/** Makes a message when its turn has come; an empty one is left out. */
+type Teller = () => string;
+
+class Speech {
+  said = $state('');
+  #waiting = new Map<string, Teller>();
+  #timer = 0;
+
+  /** Has a message of a subject told; an earlier one of the same subject that still waits is dropped. */
+  tell(subject: string, teller: Teller): void {
+    this.#waiting.set(subject, teller);
+    if (this.#timer === 0) this.#next();
+  }
+
+  /** Takes back what waits of a subject. */
+  drop(subject: string): void {
+    this.#waiting.delete(subject);
+  }
+
+  #next = (): void => {
+    const texts = [...this.#waiting.values()].map((teller) => teller()).filter((text) => text !== '');
+    this.#waiting.clear();
+    this.#timer = 0;
+    if (texts.length === 0) return;
+    this.said = texts.join('. ');
+    this.#timer = window.setTimeout(this.#next, GAP);
+  };
+}
+
+export const speech = new Speech();
