@@ -1,8 +1,9 @@
 // The editor on a telephone, upright and on its side: bars that fit, sheets, and drawing with fingers.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
+import { words } from './table';
 import { LYING, telephone, UPRIGHT, type Hand } from './finger';
-import { box, browser, core, drawn, item, playground, until, type Site } from './lib';
+import { axe, box, browser, core, drawn, item, playground, until, type Site } from './lib';
 
 const LINE = 'input go, back : BOOL\noutput motor : BOOL\n\nchart G1 {\n  initial step 0\n  step 1 {\n    N motor\n  }\n  step 2\n  0 -> 1 when go\n  1 -> 2 when back\n  2 -> 0 when not go\n}\n';
 
@@ -192,3 +193,47 @@ test('the keyboard of the screen does not cover the field that is typed in', asy
   await until(async () => (await page.getByRole('button', { name: 'Operate', exact: true }).count()) === 1, 'without a keyboard the lower bar is back');
   await page.context().close();
 });
+
+for (const [n, language] of (['en', 'fr', 'pt'] as const).entries()) {
+  test(`axe finds nothing wrong on a telephone, ${language}`, async () => {
+    const word = (english: string) => words.find((row) => row[0] === english)?.[n] ?? english;
+    const hand = await telephone(b, site, 'cell/line.g7', UPRIGHT, { language });
+    const { page } = hand;
+    const right = async (place: string) => assert.deepEqual(await axe(page), [], place);
+    await hand.choose('G1/s/1');
+    await right('the drawing');
+    await hand.press(word('More of the run'));
+    await right('the rest of the bar of the run');
+    await hand.press(word('More of the run'));
+    await hand.tapTwice(await core(page, 'G1/t/2'));
+    await field(hand).waitFor();
+    await right('a field');
+    await hand.press(word('Cancel'));
+    await hand.press(word('One scan'));
+    await hand.press(word('Operate'));
+    await right('operate');
+    await page.getByRole('tab', { name: word('Properties') }).tap();
+    await right('properties');
+    await hand.press(word('Panels'));
+    for (const panel of ['Problems', 'Variables', 'Inputs and outputs', 'Tests', 'Prove', 'Compare', 'Export', 'Chronogram']) {
+      await page.getByRole('tab', { name: word(panel) }).tap();
+      await right(panel);
+    }
+    await hand.press(word('Files'));
+    await right('files');
+    await hand.press(word('Text'));
+    await page.locator('.cm-content').waitFor();
+    await right('text');
+    for (const dialog of ['Settings', 'Keyboard shortcuts']) {
+      await hand.press(word('More'));
+      await hand.press(word(dialog));
+      await page.getByRole('dialog', { name: word(dialog) }).waitFor();
+      await right(dialog);
+      await page.getByRole('dialog', { name: word(dialog) }).getByRole('button', { name: word('Close'), exact: true }).tap();
+    }
+    await page.getByRole('button', { name: word('Gallery') }).tap();
+    await page.locator('main.start').waitFor();
+    await right('the gallery');
+    await page.context().close();
+  });
+}

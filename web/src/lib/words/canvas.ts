@@ -140,5 +140,10 @@ export const canvas = {
   ],
   'help.marquee': ['Shift + drag: select an area', 'Maj + glisser : sélectionner une zone', 'Shift + arrastar: selecionar uma área'],
   'help.wheel': ['Wheel: move; Ctrl + wheel, pinch: zoom', 'Molette : déplacer ; Ctrl + molette, pincer : zoom', 'Roda: mover; Ctrl + roda, beliscar: zoom'],
+  'help.tap': [
+    'Fingers: two taps edit, a long press opens the menu, a drag moves what is selected',
+    'Doigts : deux appuis modifient, un appui long ouvre le menu, glisser déplace la sélection',
+    'Dedos: dois toques editam, um toque longo abre o menu, arrastar move a seleção',
+  ],
   'help.double': ['Double-click: edit or open; on the paper, a new step', 'Double-clic : modifier ou ouvrir ; sur le papier, une étape', 'Duplo clique: editar ou abrir; no papel, uma etapa nova'],
 } as const satisfies Words;
