@@ -1,4 +1,4 @@
-// What a screen reader is told: names, roles and states of all that can be operated, the symbols of the drawing, and
+// The page for screen readers: names, roles and states of all that can be operated, the symbols of the drawing, and
 // changes that come by themselves. Also: nothing moves for those who asked for that.
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
@@ -83,13 +83,13 @@ for (const language of ['en', 'fr', 'pt'] as const) {
 
 test('a symbol is named with its state and with what it does, in three languages', async () => {
   for (const [language, scan, expected] of [
-    ['en', 'One scan', 'Step 1, active, action motor'],
-    ['fr', 'Un cycle', 'Étape 1, active, action motor'],
-    ['pt', 'Um ciclo', 'Etapa 1, ativa, ação motor'],
+    ['en', 'One scan', 'Step 1, active, action N motor'],
+    ['fr', 'Un cycle', 'Étape 1, active, action N motor'],
+    ['pt', 'Um ciclo', 'Etapa 1, ativa, ação N motor'],
   ] as const) {
     const page = await openWith(b, site, 'line.g7', { language });
     await page.getByRole('button', { name: scan, exact: true }).click();
-    await page.getByRole('switch', { name: /go$/ }).click();
+    await page.getByRole('switch', { name: /go$/ }).first().click();
     await page.getByRole('button', { name: scan, exact: true }).click();
     await press(page, 'G1/s/1');
     const name = () => item(page, 'G1/s/1').getAttribute('aria-label');

@@ -6,7 +6,7 @@ import type { Run } from '../lib/runs.svelte';
 /** More names than this are counted. */
 const MOST = 4;
 
-/** What was last told of a run. */
+/** The state of a run when it was last told. */
 export interface Heard {
   run: Run;
   steps: ReadonlySet<string>;

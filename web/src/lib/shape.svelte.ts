@@ -6,7 +6,7 @@ const narrow = new MediaQuery('(max-width: 560px)');
 const coarse = new MediaQuery('(pointer: coarse)');
 const low = new MediaQuery('(max-height: 480px) and (pointer: coarse)');
 
-/** What hides more of the window than this is a keyboard, in px. Bars of a browser are smaller. */
+/** A keyboard hides more of the window than this, in px; the bars of a browser hide less. */
 const KEYBOARD = 120;
 
 /** The three regions that can be opened. */

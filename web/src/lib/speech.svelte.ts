@@ -1,5 +1,5 @@
-// What screen readers are told of changes that nobody asked for: one region of the page, whose text changes about once
-// a second at most. What happens meanwhile is told together.
+// Messages to screen readers about changes that come by themselves: one region of the page, whose text changes about
+// once a second at most. Several changes in that time are one message.
 
 /** The least time between two messages, in ms. */
 const GAP = 1200;
