@@ -100,7 +100,29 @@ export async function ended(child: ChildProcess, how: NodeJS.Signals): Promise<n
   return code;
 }
 
-/** Debian's Chromium without access to the network. */
+/** The warnings of the framework and the errors that no code caught, of all pages of this program. */
+const heard: string[] = [];
+
+// Told as the program ends, because a test that threw in a hook would leave its servers behind.
+process.once('exit', () => {
+  if (heard.length === 0) return;
+  console.error(`pages warned ${heard.length} times:\n${[...new Set(heard)].join('\n')}`);
+  process.exitCode = 1;
+});
+
+/** Hears every page of a browser. An address that does not answer is no warning: stories stop servers on purpose. */
+function listen(to: Browser): void {
+  const contexts = to.newContext.bind(to);
+  to.newContext = async (options) => {
+    const context = await contexts(options);
+    // The empty page, on which scripts of a story run first, has no storage.
+    context.on('weberror', (e) => e.error().message.includes('for this document') || heard.push(e.error().message));
+    context.on('console', (m) => (m.type() === 'warning' || m.text().includes('svelte.dev/e/')) && heard.push(m.text()));
+    return context;
+  };
+}
+
+/** Debian's Chromium without access to the network. A warning on any of its pages makes the test file fail. */
 export async function browser(): Promise<Browser & { done(): Promise<void> }> {
   const home = mkdtempSync(join(tmpdir(), 'g7-browser-'));
   const found = await chromium.launch({
@@ -108,6 +130,7 @@ export async function browser(): Promise<Browser & { done(): Promise<void> }> {
     args: ['--no-sandbox', '--disable-gpu', '--disable-quic', '--no-first-run', '--disable-background-networking', '--disable-component-update', '--disable-sync'],
     env: { ...process.env, HOME: home },
   });
+  listen(found);
   return Object.assign(found, {
     done: async () => {
       await found.close();

@@ -3,13 +3,10 @@ import { select } from 'd3-selection';
 import { zoom, zoomIdentity, type D3ZoomEvent, type ZoomBehavior } from 'd3-zoom';
 import type { Box } from '../lib/protocol';
 import type { View } from './editor.svelte';
+import { margins } from './margins';
 
 const LEAST = 0.02;
 const MOST = 4;
-/** Room for the elements over the drawing: the palette, the path of charts, the zoom buttons. */
-const SIDE = 64;
-const TOP = 58;
-const LOW = 40;
 
 export class Camera {
   #root: HTMLElement;
@@ -63,31 +60,38 @@ export class Camera {
     select(this.#root).call(this.#zoom.translateTo, x, y);
   }
 
+  /** The size of the sheet without what lies over its edges. */
+  #room(): { left: number; top: number; w: number; h: number } {
+    const { clientWidth, clientHeight } = this.#root;
+    const { left, right, top, low } = margins();
+    return { left, top, w: Math.max(clientWidth - left - right, 1), h: Math.max(clientHeight - top - low, 1) };
+  }
+
   /** Shows the whole chart. */
   fit(most = 1.5): void {
-    const { clientWidth: w, clientHeight: h } = this.#root;
+    const { left, top, w, h } = this.#room();
     const [ax, ay, aw, ah] = this.#area();
-    const k = Math.min(most, Math.max(w - 2 * SIDE, 1) / Math.max(aw, 1), Math.max(h - TOP - LOW, 1) / Math.max(ah, 1));
+    const k = Math.min(most, w / Math.max(aw, 1), h / Math.max(ah, 1));
     // A chart of thousands of steps is smaller than the wheel makes it.
     this.#zoom.scaleExtent([Math.min(LEAST, k), MOST]);
-    this.set({ k, x: w / 2 - (ax + aw / 2) * k, y: TOP + (h - TOP - LOW) / 2 - (ay + ah / 2) * k });
+    this.set({ k, x: left + w / 2 - (ax + aw / 2) * k, y: top + h / 2 - (ay + ah / 2) * k });
   }
 
   /** The first view: the whole chart if it is readable, otherwise its beginning. */
   begin(first: Box): void {
-    const { clientWidth: w, clientHeight: h } = this.#root;
+    const { left, top, w, h } = this.#room();
     const [ax, ay, aw, ah] = this.#area();
-    const all = Math.min((w - 2 * SIDE) / Math.max(aw, 1), (h - TOP - LOW) / Math.max(ah, 1));
+    const all = Math.min(w / Math.max(aw, 1), h / Math.max(ah, 1));
     if (all >= 0.6) {
       this.fit(1);
       return;
     }
-    const k = Math.max(0.6, Math.min(1, (w - 2 * SIDE) / Math.max(aw, 1)));
-    const [left, right] = [SIDE - ax * k, w - SIDE - (ax + aw) * k];
-    const middle = w / 2 - (first[0] + first[2] / 2) * k;
-    const x = right >= left ? w / 2 - (ax + aw / 2) * k : Math.max(right, Math.min(left, middle));
-    const far = (first[1] - ay) * k > (h - TOP) / 2;
-    this.set({ k, x, y: TOP - (far ? first[1] - 60 : ay) * k });
+    const k = Math.max(0.6, Math.min(1, w / Math.max(aw, 1)));
+    const [from, to] = [left - ax * k, left + w - (ax + aw) * k];
+    const middle = left + w / 2 - (first[0] + first[2] / 2) * k;
+    const x = to >= from ? left + w / 2 - (ax + aw / 2) * k : Math.max(to, Math.min(from, middle));
+    const far = (first[1] - ay) * k > h / 2;
+    this.set({ k, x, y: top - (far ? first[1] - 60 : ay) * k });
   }
 
   reveal(box: Box, centre = false): void {
@@ -95,8 +99,9 @@ export class Camera {
     const { clientWidth: w, clientHeight: h } = this.#root;
     const [x, y] = [box[0] * t.k + t.x, box[1] * t.k + t.y];
     const [right, low] = [x + box[2] * t.k, y + box[3] * t.k];
-    const edge = 50;
-    if (!centre && x >= edge && y >= edge && right <= w - edge && low <= h - edge) {
+    // Below a symbol stands the handle for its links.
+    const [edge, beneath] = [50, Math.max(50, margins().low + 12)];
+    if (!centre && x >= edge && y >= edge && right <= w - edge && low <= h - beneath) {
       // The overview covers its corner.
       const map = this.#root.parentElement?.querySelector('.map')?.getBoundingClientRect();
       const top = map ? map.top - this.#root.getBoundingClientRect().top : h;
@@ -107,8 +112,8 @@ export class Camera {
       this.moveTo(box[0] + box[2] / 2, box[1] + box[3] / 2);
       return;
     }
-    const by = (from: number, to: number, size: number) => (from < edge ? edge - from : to > size - edge ? Math.max(size - edge - to, edge - from) : 0);
-    this.panBy(by(x, right, w), by(y, low, h));
+    const by = (from: number, to: number, last: number) => (from < edge ? edge - from : to > last ? Math.max(last - to, edge - from) : 0);
+    this.panBy(by(x, right, w - edge), by(y, low, h - beneath));
   }
 
   focus(): void {

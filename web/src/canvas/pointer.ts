@@ -6,8 +6,14 @@ import type { LinkEnd } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';
 
-/** Movements smaller than this are clicks, in px. */
+/** Movements smaller than this are clicks, in px; a finger is less steady than a mouse. */
 const CLICK = 4;
+const TAP = 10;
+/** A finger that stays so long opens the menu, in ms. */
+const LONG = 500;
+/** Two taps within this time, in ms, and this distance, in px, are one double tap. */
+const TWICE = 400;
+const NEAR = 30;
 /** So near to an edge of the sheet a drag moves the view, in px. */
 const EDGE = 36;
 /** How fast it does so at the edge itself, in px per ms. */
@@ -37,9 +43,15 @@ export class Pointer {
   #place: (e: { clientX: number; clientY: number }) => [number, number];
   #root: HTMLElement;
   #touch = false;
+  #long = 0;
+  /** The last tap of a finger. */
+  #tapped = { at: -Infinity, x: 0, y: 0 };
+  #menu: (e: PointerEvent) => void;
 
-  constructor(root: HTMLElement) {
+  /** `menu` opens the menu at a place. */
+  constructor(root: HTMLElement, menu: (e: PointerEvent) => void) {
     this.#root = root;
+    this.#menu = menu;
     this.#place = (e) => {
       const box = root.getBoundingClientRect();
       return [e.clientX - box.left, e.clientY - box.top];
@@ -53,6 +65,27 @@ export class Pointer {
     return editor.scene?.hit(x, y, reach) ?? null;
   }
 
+  /** True if the last press was one of a finger. */
+  get fingers(): boolean {
+    return this.#touch;
+  }
+
+  /** True if a drag moves a symbol. A finger moves selected ones alone, because it often meets a symbol where paper was
+   * meant. */
+  #moves(item: Item | null): boolean {
+    if (!item || !held(item)) return false;
+    return !this.#touch || shell.selection.has(item.id) || shell.selection.has(actionOf(item.id)?.step ?? '');
+  }
+
+  /** True for the second tap of a finger at one place. Not every browser tells of that as a double click. */
+  twice(e: MouseEvent): boolean {
+    if (!this.#touch) return false;
+    const was = this.#tapped;
+    const double = e.timeStamp - was.at < TWICE && Math.hypot(e.clientX - was.x, e.clientY - was.y) < NEAR;
+    this.#tapped = { at: double ? -Infinity : e.timeStamp, x: e.clientX, y: e.clientY };
+    return double;
+  }
+
   /** True if a press moves the view: on the paper, or with the middle button. */
   mayPan = (e: MouseEvent | TouchEvent): boolean => {
     if ('touches' in e) {
@@ -61,7 +94,7 @@ export class Pointer {
         return true;
       }
       const touch = e.touches[0];
-      return !!touch && !held(this.under(touch));
+      return !!touch && !this.#moves(this.under(touch));
     }
     if (e.button === 1) return true;
     return e.button === 0 && !e.shiftKey && !held(this.under(e));
@@ -77,6 +110,18 @@ export class Pointer {
     this.#press(e);
     const add = e.shiftKey || e.ctrlKey || e.metaKey;
     this.#doing = held(item) || !e.shiftKey ? { what: 'press', item, add } : { what: 'mark', item, add };
+    if (this.#touch) this.#long = window.setTimeout(() => this.#stay(e), LONG);
+  }
+
+  /** A finger stays where it pressed. */
+  #stay(e: PointerEvent): void {
+    if (this.#doing?.what !== 'press') return;
+    this.#doing = null;
+    this.#menu(e);
+    // As the finger leaves, some browsers press what is under it now: the menu.
+    const lost = (click: Event) => click.stopPropagation();
+    window.addEventListener('click', lost, true);
+    window.addEventListener('pointerdown', () => window.removeEventListener('click', lost, true), { capture: true, once: true });
   }
 
   #press(e: PointerEvent): void {
@@ -115,7 +160,8 @@ export class Pointer {
     const [x, y] = this.#place(e);
     const [dx, dy] = [x - this.#at.x, y - this.#at.y];
     if (doing.what === 'press') {
-      if (Math.hypot(dx, dy) < CLICK) return;
+      if (Math.hypot(dx, dy) < (this.#touch ? TAP : CLICK)) return;
+      clearTimeout(this.#long);
       if (!doing.item || !this.#grab(doing.item, doing.add, e.altKey)) {
         this.#doing = null;
         this.#root.setPointerCapture(e.pointerId);
@@ -171,7 +217,7 @@ export class Pointer {
   /** Starts dragging the selection or the pressed symbol; neighbours come along unless `alone` is
    * true. */
   #grab(item: Item, add: boolean, alone: boolean): boolean {
-    if (!held(item)) return false;
+    if (!this.#moves(item)) return false;
     const id = actionOf(item.id)?.step ?? item.id;
     if (!shell.selection.has(item.id) && !shell.selection.has(id)) {
       shell.select(add ? [...shell.selection, id] : [id]);
@@ -186,6 +232,7 @@ export class Pointer {
   up(e: PointerEvent): void {
     const doing = this.#doing;
     this.#doing = null;
+    clearTimeout(this.#long);
     if (!doing) return;
     if (doing.what === 'press') this.#click(doing.item, doing.add);
     else if (doing.what === 'move') void this.#drop(doing.ids);
@@ -196,6 +243,7 @@ export class Pointer {
 
   stop(): void {
     this.#doing = null;
+    clearTimeout(this.#long);
     editor.moving = null;
     editor.marquee = null;
     editor.linking = null;

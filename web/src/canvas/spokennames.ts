@@ -1,7 +1,16 @@
 // The names of symbols for screen readers.
 import { actionOf, nameIn } from '../lib/ids';
+import { live } from '../lib/live.svelte';
+import type { Scene } from './scene';
 import { t } from '../lib/i18n';
 import type { Item } from '../lib/protocol';
+
+/** The name of a symbol in a drawing, with its state in the run, and with what a step does. */
+export function spokenOf(item: Item, scene: Scene | null): string {
+  const active = live.on.has(item.id) && t('canvas.active');
+  const actions = item.part === 'step' ? (scene?.actions.get(item.id) ?? []).map((action) => action.source ?? '') : [];
+  return [nameOf(item), active, actions.length > 0 && t('canvas.does', { text: actions.join('; ') })].filter(Boolean).join(', ');
+}
 
 export function nameOf(item: Item): string {
   const with_ = (name: string) => (item.comment ? `${name} — ${item.comment}` : name);

@@ -121,6 +121,23 @@ export class Surface {
     for (; at < children.length; at++) children[at]?.remove();
   }
 
+  /** Names the drawn symbols anew: their names depend on the run, and that of a step on its actions. */
+  speak(): void {
+    for (const blocks of this.#cells.values()) {
+      for (const block of blocks) {
+        if (block.shown === 'near') block.items.forEach((item, n) => this.#say(block, item, n));
+      }
+    }
+  }
+
+  #say(block: Block, item: Item, n: number): void {
+    if (!spoken(item)) return;
+    const name = this.#name(item);
+    if (name === block.names[n]) return;
+    block.node?.children[n]?.setAttribute('aria-label', name);
+    block.names[n] = name;
+  }
+
   /** Brings the names of a node up to date, which showed another symbol. */
   #rename(child: Element, old: Item, block: Block, n: number): void {
     const item = block.items[n] as Item;

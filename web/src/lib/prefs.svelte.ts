@@ -1,5 +1,6 @@
 // The user's choices, which the browser remembers.
 import type { Language } from './i18n';
+import { shape } from './shape.svelte';
 
 export type Theme = 'auto' | 'light' | 'dark';
 
@@ -10,6 +11,8 @@ interface Kept {
   right: number;
   bottom: number;
   split: number;
+  /** The share of the window that a sheet takes on a telephone. */
+  sheet: number;
   leftOpen: boolean;
   rightOpen: boolean;
   bottomOpen: boolean;
@@ -36,13 +39,15 @@ const first: Kept = {
   right: 300,
   bottom: 220,
   split: 0.5,
+  sheet: 0.6,
   leftOpen: true,
   rightOpen: true,
   bottomOpen: false,
   view: 'chart',
   look: 'iec60848',
   pages: false,
-  minimap: true,
+  // It would cover the drawing of a telephone.
+  minimap: !shape.phone,
   follow: false,
   guided: false,
 };

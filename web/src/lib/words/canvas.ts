@@ -13,6 +13,7 @@ export const canvas = {
   'canvas.connector': ['Connector to {name}', 'Renvoi vers {name}', 'Ligação para {name}'],
   'canvas.link': ['Link', 'Liaison', 'Ligação orientada'],
   'canvas.active': ['active', 'active', 'ativa'],
+  'canvas.does': ['action {text}', 'action {text}', 'ação {text}'],
   'canvas.selected': ['{n} selected', '{n} sélectionnés', '{n} selecionados'],
   'canvas.empty': ['This chart is empty. Press Insert or double-click to put the first step.', 'Ce grafcet est vide. Appuyez sur Inser ou double-cliquez pour poser la première étape.', 'Este grafcet está vazio. Prima Insert ou faça duplo clique para pôr a primeira etapa.'],
   'canvas.zoomIn': ['Zoom in', 'Agrandir', 'Ampliar'],
@@ -95,6 +96,8 @@ export const canvas = {
   'field.assign': ['becomes', 'prend la valeur', 'toma o valor'],
   'field.force': ['forcing order', 'ordre de forçage', 'ordem de forçagem'],
   'field.when': ['only if', 'seulement si', 'só se'],
+  'field.done': ['Done', 'Valider', 'Feito'],
+  'field.onward': ['Go on', 'Continuer', 'Continuar'],
   'field.hint': ['Enter: done · Tab: go on · Esc: leave it', 'Entrée : valider · Tab : continuer · Échap : laisser', 'Enter: feito · Tab: continuar · Esc: deixar'],
   'inspect.none': ['Select a symbol to see its properties.', 'Sélectionnez un symbole pour voir ses propriétés.', 'Selecione um símbolo para ver as suas propriedades.'],
   'inspect.name': ['Name', 'Nom', 'Nome'],
@@ -137,5 +140,10 @@ export const canvas = {
   ],
   'help.marquee': ['Shift + drag: select an area', 'Maj + glisser : sélectionner une zone', 'Shift + arrastar: selecionar uma área'],
   'help.wheel': ['Wheel: move; Ctrl + wheel, pinch: zoom', 'Molette : déplacer ; Ctrl + molette, pincer : zoom', 'Roda: mover; Ctrl + roda, beliscar: zoom'],
+  'help.tap': [
+    'Fingers: two taps edit, a long press opens the menu, a drag moves what is selected',
+    'Doigts : deux appuis modifient, un appui long ouvre le menu, glisser déplace la sélection',
+    'Dedos: dois toques editam, um toque longo abre o menu, arrastar move a seleção',
+  ],
   'help.double': ['Double-click: edit or open; on the paper, a new step', 'Double-clic : modifier ou ouvrir ; sur le papier, une étape', 'Duplo clique: editar ou abrir; no papel, uma etapa nova'],
 } as const satisfies Words;

@@ -35,6 +35,8 @@ export const shell = {
   'app.left': ['Left side', 'Côté gauche', 'Lado esquerdo'],
   'app.right': ['Right side', 'Côté droit', 'Lado direito'],
   'app.bottom': ['Bottom', 'Bas', 'Fundo'],
+  'app.panels': ['Panels', 'Panneaux', 'Painéis'],
+  'app.more': ['More', 'Plus', 'Mais'],
   'app.resize': ['Resize', 'Redimensionner', 'Redimensionar'],
   'app.filter': ['Filter', 'Filtrer', 'Filtrar'],
   'app.openFiles': ['Open files', 'Fichiers ouverts', 'Ficheiros abertos'],
