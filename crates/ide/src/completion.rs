@@ -124,7 +124,11 @@ impl Place<'_> {
             (TokenKind::Note | TokenKind::Str | TokenKind::Comment, _) if self.is_within(last) => Vec::new(),
             (TokenKind::PathDot, _) => self.members(),
             (TokenKind::Sign, ".") if self.joins(last) => self.members(),
-            (TokenKind::Colon, _) if around == Around::Struct || self.declares() => {
+            (TokenKind::Colon, _)
+                if around == Around::Struct
+                    || self.declares()
+                    || around == Around::File && self.in_head() =>
+            {
                 [types(), self.composed(around)].concat()
             }
             (_, "OF" | "of") if around == Around::Struct || self.declares() => {
@@ -281,12 +285,21 @@ impl Place<'_> {
         self.document.charts().find(around)
     }
 
-    /// The types that the file declares, where a variable can have one.
+    /// The types that the file declares, where a variable can have one. A parameter, a local variable and a result hold
+    /// one value.
     fn composed(&self, around: Around) -> Vec<Choice> {
-        if around == Around::Body || self.after("state") || self.after("parts") {
+        if self.after("state") || self.after("parts") {
             return Vec::new();
         }
-        self.document.items.iter().filter_map(type_choice).collect()
+        let parameter = around == Around::File && self.in_head();
+        let one = |i: &&Item| matches!(i, Item::Type(t) if t.array.is_none());
+        let fits = |i: &&Item| one(i) || !parameter && around != Around::Body;
+        self.document.items.iter().filter(fits).filter_map(type_choice).collect()
+    }
+
+    /// True if this line is the head of a function or of a chart.
+    fn in_head(&self) -> bool {
+        ["function", "chart", "macrochart", "task"].iter().any(|w| self.after(w))
     }
 
     /// The function blocks that the file declares.

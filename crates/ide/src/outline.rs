@@ -8,7 +8,7 @@ use g7_model::{
 };
 
 use crate::file::Readable;
-use crate::tables::{class, declaration, kind};
+use crate::tables::{class, declaration, kind, value_type};
 
 /// The kind of an entry of the outline.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,7 +67,12 @@ fn entries(item: &Item, text: &str) -> Vec<Entry> {
         }
         Item::Section(s) => vec![entry(&s.name, Kind::Function, say!("transition section"), s.at.0)],
         Item::Function(f) => {
-            vec![entry(&f.name, Kind::Function, say!("function : {}", f.result), f.at.0)]
+            vec![entry(
+                &f.name,
+                Kind::Function,
+                say!("function : {}", Said::foreign(value_type(&f.result))),
+                f.at.0,
+            )]
         }
         Item::Plant(p) => vec![plant(p)],
         Item::Test(t) => vec![titled(t.title.to_string(), t.at.0)],

@@ -1,7 +1,7 @@
 //! The tables of variables and steps.
 
 use g7_compile::references::{Declared, Member};
-use g7_model::{ChartKind, Document, Item, Limits, Said, Span, Type, VarDecl, VarKind, say};
+use g7_model::{ChartKind, Document, Item, Limits, Said, Span, Type, ValueType, VarDecl, VarKind, say};
 
 use crate::file::Readable;
 use crate::ids;
@@ -128,15 +128,20 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
     Tables { stale: readable.stale, variables, steps }
 }
 
-/// The type of a declaration, with the bounds of an array.
-fn type_of(v: &VarDecl) -> String {
-    let ty = match (&v.of, v.limits.as_deref()) {
+/// A type of one value, as the text writes it: `Mode`, `INT(0..100)`.
+pub fn value_type(ty: &ValueType) -> String {
+    match (&ty.of, ty.limits.as_deref()) {
         (Some(of), _) => of.text.to_string(),
         (None, Some(Limits::Range(least, most))) => {
-            format!("{}({}..{})", v.ty, g7_syntax::print_expr(least), g7_syntax::print_expr(most))
+            format!("{}({}..{})", ty.base, g7_syntax::print_expr(least), g7_syntax::print_expr(most))
         }
-        (None, _) => v.ty.to_string(),
-    };
+        (None, _) => ty.base.to_string(),
+    }
+}
+
+/// The type of a declaration, with the bounds of an array.
+fn type_of(v: &VarDecl) -> String {
+    let ty = value_type(&v.value_type());
     let Some(array) = &v.array else { return ty };
     let bounds: Vec<String> = array
         .dimensions
@@ -179,6 +184,6 @@ pub fn member_declaration(member: &Member<'_>) -> String {
         Declared::Var(v) if !member.of.block => declaration_after("", name, v),
         Declared::Var(v) => declaration(name, v),
         Declared::InOut(v) => declaration_after("inout ", name, v),
-        Declared::Local(l) => format!("var {name} : {}", l.ty),
+        Declared::Local(l) => format!("var {name} : {}", value_type(&l.ty)),
     }
 }

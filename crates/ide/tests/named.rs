@@ -86,3 +86,46 @@ fn values_and_types_are_offered_where_they_can_stand() {
         assert_eq!(first, wanted, "{text}");
     }
 }
+
+const FUNCTION: &str = "\
+type Mode : (Off, Manual)
+type Row : ARRAY[1..2] OF INT
+input want : Mode
+function Next(m : Mode, plus : INT(0..9)) : Mode {
+  var last : Mode := Manual
+  Next := SEL(m = Mode.Off, Mode.Off, last)
+}
+chart Drive(i : INT, wish : Mode) {
+  initial step 0
+  0 -> 0 when wish = want
+}
+instance First : Drive(1, Manual)
+";
+
+/// The types of parameters, results and local variables are names like those of variables.
+#[test]
+fn types_of_parameters_are_followed_and_renamed() {
+    let file = file(FUNCTION);
+    let place = |words: &str| FUNCTION.find(words).expect("it is there") + words.len() - 1;
+    for words in ["want : Mode", "(m : Mode", ") : Mode", "last : Mode", "wish : Mode"] {
+        let found = uses(&file, place(words));
+        assert_eq!(found.declared.map(|r| r.start), Some(5), "{words}");
+        let splices = rename(&file, place(words), "Switch").expect("it can be renamed");
+        assert_eq!(spliced(FUNCTION, &splices).expect("they fit"), FUNCTION.replace("Mode", "Switch"));
+    }
+}
+
+/// Where one value is meant, no structure and no array is offered.
+#[test]
+fn types_of_one_value_are_offered_to_parameters() {
+    for (before, after) in [("(m : Mode", "(m : |"), ("last : Mode", "last : |"), ("wish : Mode", "wish : |")]
+    {
+        let text = FUNCTION.replacen(before, after, 1);
+        let place = text.find('|').expect("a mark");
+        let mut open = file(FUNCTION);
+        open.take(text.replacen('|', "", 1)).expect("a text");
+        let offered: Vec<String> = complete(&open, place).items.into_iter().map(|c| c.label).collect();
+        let has = |name: &str| offered.iter().any(|o| o == name);
+        assert!(has("Mode") && has("INT") && !has("Row"), "{after}: {offered:?}");
+    }
+}

@@ -9,7 +9,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use g7_model::{ChartKind, Document, Item, Limits, Name, Path, VarDecl, VarKind, bare};
+use g7_model::{Arg, ChartKind, Document, Item, Limits, Name, Path, ValueType, VarDecl, VarKind, bare};
 
 /// Where a name is declared: in the file, in a chart, or in a structure or function block.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -30,10 +30,28 @@ pub(crate) struct Declared {
     pub(crate) inout: bool,
 }
 
+/// The declarations of the parameters of a function and of its result.
+pub(crate) struct Signature {
+    params: Vec<(Box<str>, Declared)>,
+    pub(crate) result: Declared,
+}
+
+impl Signature {
+    /// The parameter that gets an argument, which stands at this place in a call.
+    pub(crate) fn parameter(&self, arg: &Arg, place: usize) -> Option<&Declared> {
+        let found = match &arg.name {
+            Some(name) => self.params.iter().find(|(param, _)| param.eq_ignore_ascii_case(&name.text)),
+            None => self.params.get(place),
+        };
+        found.map(|(_, declared)| declared)
+    }
+}
+
 /// All variables of a document.
 #[derive(Default)]
 pub(crate) struct Variables {
     all: HashMap<(Home, Box<str>), Declared>,
+    functions: HashMap<Box<str>, Signature>,
     /// The inputs and in-outs of each function block, in the order of the text, in which a call can name none.
     inputs: HashMap<Box<str>, Vec<Box<str>>>,
     /// Those of charts, by their names alone: an expansion names variables of its program. Those that several charts
@@ -68,10 +86,29 @@ impl Variables {
                     let given = given.into_iter().map(|n| n.text.clone()).collect();
                     made.inputs.insert(c.name.text.clone(), given);
                 }
+                Item::Function(f) => {
+                    let params = f.params.iter().map(|p| (p.name.text.clone(), of_value(&p.ty))).collect();
+                    let signature = Signature { params, result: of_value(&f.result) };
+                    made.functions.insert(f.name.text.clone(), signature);
+                }
                 _ => {}
             }
         }
         made
+    }
+
+    /// The enumerations of parameters and results of functions.
+    pub(crate) fn of_functions(&self) -> impl Iterator<Item = &str> {
+        let types = self.functions.values().flat_map(|f| f.params.iter().map(|(_, p)| p).chain([&f.result]));
+        types.filter_map(|declared| declared.of.as_deref())
+    }
+
+    /// The function of the file that a path calls.
+    pub(crate) fn function(&self, called: &Path) -> Option<&Signature> {
+        match called.names.as_slice() {
+            [name] => self.functions.get(&name.text),
+            _ => None,
+        }
     }
 
     fn add(&mut self, home: &Home, decl: &VarDecl, inout: bool) {
@@ -149,7 +186,12 @@ impl Variables {
 }
 
 fn declared(decl: &VarDecl) -> Declared {
-    let of = if let Some(Limits::Of(of)) = decl.limits.as_deref() { Some(of.text.clone()) } else { None };
-    let block = decl.of.as_ref().map(|of| of.text.clone());
-    Declared { of, block, array: decl.array.is_some(), inout: false }
+    Declared { array: decl.array.is_some(), ..of_value(&decl.value_type()) }
+}
+
+/// A parameter, a local variable or a result as a declaration.
+pub(crate) fn of_value(ty: &ValueType) -> Declared {
+    let of = if let Some(Limits::Of(of)) = ty.limits.as_deref() { Some(of.text.clone()) } else { None };
+    let block = ty.of.as_ref().map(|of| of.text.clone());
+    Declared { of, block, array: false, inout: false }
 }

@@ -1,6 +1,6 @@
 //! Actions of steps, and the Structured Text inside them.
 
-use crate::{Arg, Expr, Name, Path, Place, Qualifier, Type};
+use crate::{Arg, Expr, Name, Path, Place, Qualifier, ValueType};
 
 /// One action of a step.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -120,8 +120,8 @@ pub struct Local {
     /// The names declared together.
     pub names: Vec<Name>,
     /// Their type.
-    pub ty: Type,
-    /// Initial value.
+    pub ty: ValueType,
+    /// Initial value; that of the type when absent.
     pub init: Option<Expr>,
     /// Where it stands.
     pub at: Place,

@@ -3,7 +3,7 @@
 use crate::words::Told;
 use crate::{
     Action, Arg, Block, Body, Expr, Limits, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type,
-    Use,
+    Use, ValueType,
 };
 
 /// All of one file.
@@ -447,7 +447,7 @@ pub struct Function {
     /// Its inputs.
     pub params: Vec<Param>,
     /// The type of its result.
-    pub result: Type,
+    pub result: ValueType,
     /// Its statements.
     pub body: Block,
     /// Where it stands.

@@ -302,12 +302,12 @@ impl<'d> Maker<'d> {
     /// The first and the last number of a range.
     fn bounds(&mut self, chart: &Chart, least: &Expr, most: &Expr) -> Option<(i64, i64)> {
         if let Some(index) = chart.params.first()
-            && !index.ty.is_integer()
+            && !index.ty.base.is_integer()
         {
             let what = say!(
                 "the numbers of a range are values of `{}`, which is a {} and no whole number",
                 index.name.text,
-                index.ty
+                index.ty.base
             );
             let problem = Problem::new(&codes::WRONG_TYPE, least.at.0, what);
             self.problems.push(problem.related(index.name.at.0, say!("declared here")));
@@ -473,7 +473,8 @@ impl<'d> Maker<'d> {
 
 /// A parameter as a constant of its instance.
 fn constant(param: &Param, value: Option<Expr>) -> VarDecl {
-    VarDecl { init: value, ..VarDecl::new(VarKind::Const, vec![param.name.clone()], param.ty, param.name.at) }
+    let plain = VarDecl::of_type(VarKind::Const, vec![param.name.clone()], &param.ty, param.name.at);
+    VarDecl { init: value, ..plain }
 }
 
 /// The first names of all paths of an expression.

@@ -1,8 +1,8 @@
-//! Names as the author wrote them, and parameters: names with a type.
+//! Names as the author wrote them.
 //!
-//! All other files of the document use this one; it knows places and types only.
+//! All other files of the document use this one; it knows places only.
 
-use crate::{Place, Span, Type};
+use crate::{Place, Span};
 
 /// A name with its place. Text without back-ticks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -78,15 +78,6 @@ pub fn slot_of(name: &str) -> Option<(&str, usize)> {
 /// The chart in a name: `Axis` of `Axis[3]`, otherwise the whole name.
 pub fn chart_in(name: &str) -> &str {
     instance_of(name).map_or(name, |(chart, _)| chart)
-}
-
-/// A parameter of a function or chart, or an attribute of a part.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Param {
-    /// Its name.
-    pub name: Name,
-    /// Its type.
-    pub ty: Type,
 }
 
 /// A direct address in the form of the tables: upper case, `%IX0.1` as `I0.1`.

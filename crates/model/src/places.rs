@@ -9,8 +9,8 @@ use crate::{
     Item, Layout, Limits, Literal, Local, Moment, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path,
     Place, PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate,
     Said, Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target,
-    TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, VarDecl, VarKind, View,
-    Work,
+    TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, ValueType, VarDecl, VarKind,
+    View, Work,
 };
 
 /// A part of a document that has places in a text.
@@ -143,6 +143,7 @@ structs! {
     TextEdit { at, text }
     Transition { label, from, to, receptivity, priority, comment, on_clearing, chained, at }
     Use { name, library, at }
+    ValueType { base, of, limits }
     VarDecl { kind, names, array, ty, of, part_of, limits, usual, init, address, inverted, retain, safe, comment, at }
     View { file, bindings, at }
 }

@@ -8,8 +8,8 @@ use std::slice::from_ref;
 
 use crate::{
     Action, ActionKind, Arg, Block, Body, Chart, ChartItem, Composed, Document, Expr, ExprKind, Instance,
-    InstanceNames, Item, Limits, Name, Order, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind, Target,
-    TestStmt, TestStmtKind, VarDecl, Work,
+    InstanceNames, Item, Limits, Name, Order, Param, Path, PlantItem, PropertyKind, Span, Stmt, StmtKind,
+    Target, TestStmt, TestStmtKind, ValueType, VarDecl, Work,
 };
 
 /// Receives every name of a document; the methods that visit an element visit all within it.
@@ -49,7 +49,11 @@ pub trait Visitor<'d> {
             Item::Chart(c) => self.chart(c),
             Item::Action(a) => self.body(&a.body),
             Item::Section(s) => self.block(&s.body),
-            Item::Function(f) => self.block(&f.body),
+            Item::Function(f) => {
+                self.params(&f.params);
+                self.value_type(&f.result);
+                self.block(&f.body);
+            }
             Item::Pre(b, _) | Item::Post(b, _) => self.body(b),
             Item::Plant(p) => p.items.iter().for_each(|i| self.plant_item(i)),
             Item::Test(t) => t.body.iter().for_each(|s| self.test(s)),
@@ -64,13 +68,26 @@ pub trait Visitor<'d> {
     /// The values of a declaration.
     fn variable(&mut self, v: &'d VarDecl) {
         self.exprs(v.array.iter().flat_map(|a| a.bounds()).chain(&v.init).chain(&v.safe));
-        match v.limits.as_deref() {
-            Some(Limits::Range(least, most)) => self.exprs([least, most]),
-            Some(Limits::Values(values)) => {
-                self.exprs(values.iter().filter_map(|(_, number)| number.as_ref()))
-            }
-            Some(Limits::Of(_)) | None => {}
+        v.limits.iter().for_each(|l| self.limits(l));
+    }
+
+    /// The bounds of a type, or the numbers of values.
+    fn limits(&mut self, limits: &'d Limits) {
+        match limits {
+            Limits::Range(least, most) => self.exprs([least, most]),
+            Limits::Values(values) => self.exprs(values.iter().filter_map(|(_, number)| number.as_ref())),
+            Limits::Of(_) => {}
         }
+    }
+
+    /// The type of a parameter, of a local variable or of a result.
+    fn value_type(&mut self, ty: &'d ValueType) {
+        ty.limits.iter().for_each(|l| self.limits(l));
+    }
+
+    /// Parameters with their types.
+    fn params(&mut self, params: &'d [Param]) {
+        params.iter().for_each(|p| self.value_type(&p.ty));
     }
 
     /// The values of the members of a type, and the statements of a function block.
@@ -89,6 +106,7 @@ pub trait Visitor<'d> {
 
     /// All items of a chart, except for the names that they declare and the steps of transitions.
     fn chart(&mut self, chart: &'d Chart) {
+        self.params(&chart.params);
         for item in &chart.items {
             match item {
                 ChartItem::Var(v) => self.variable(v),
@@ -159,7 +177,10 @@ pub trait Visitor<'d> {
 
     /// A block with its local variables.
     fn block(&mut self, block: &'d Block) {
-        self.exprs(block.locals.iter().filter_map(|l| l.init.as_ref()));
+        for local in &block.locals {
+            self.value_type(&local.ty);
+            self.exprs(&local.init);
+        }
         self.enter(block);
         self.statements(&block.statements);
         self.leave();

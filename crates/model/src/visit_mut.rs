@@ -3,7 +3,7 @@
 
 use crate::{
     Action, ActionKind, Block, Body, Chart, ChartItem, Document, Expr, ExprKind, Item, Name, Order, Path,
-    Span, StepKind, Stmt, StmtKind, Target, Work,
+    PlantItem, Span, StepKind, Stmt, StmtKind, Target, Work,
 };
 
 /// How a variable is named.
@@ -180,6 +180,48 @@ fn stmt(s: &mut Stmt, v: &mut impl Visitor) {
         StmtKind::Exit | StmtKind::Return => {}
     }
     v.stmt(s);
+}
+
+/// The blocks of an item that stand in no other block.
+pub fn blocks(item: &mut Item, f: &mut impl FnMut(&mut Block)) {
+    match item {
+        Item::Chart(c) => c.items.iter_mut().for_each(|i| blocks_of_chart(i, f)),
+        Item::Action(a) => f(a.body.block_mut()),
+        Item::Section(s) => f(&mut s.body),
+        Item::Function(own) => f(&mut own.body),
+        Item::Pre(b, _) | Item::Post(b, _) => f(b.block_mut()),
+        Item::Composed(c) => c.body.iter_mut().for_each(|b| f(b.block_mut())),
+        Item::Plant(p) => {
+            for item in &mut p.items {
+                match item {
+                    PlantItem::On(_, b, _) | PlantItem::Each(b, _) => f(b),
+                    PlantItem::Arrivals(a) => f(&mut a.body),
+                    _ => {}
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
+fn blocks_of_chart(item: &mut ChartItem, f: &mut impl FnMut(&mut Block)) {
+    match item {
+        ChartItem::Step(s) => {
+            for action in &mut s.actions {
+                match &mut action.kind {
+                    ActionKind::Qualified { target: Target::Work(Work::Block(b)), .. }
+                    | ActionKind::OnEvent { work: Work::Block(b), .. }
+                    | ActionKind::EachScan { work: Work::Block(b), .. } => f(b),
+                    _ => {}
+                }
+            }
+        }
+        ChartItem::Transition(t) => t.on_clearing.iter_mut().for_each(f),
+        ChartItem::Pre(b, _) | ChartItem::Post(b, _) => f(b.block_mut()),
+        ChartItem::Action(a) => f(a.body.block_mut()),
+        ChartItem::Section(s) => f(&mut s.body),
+        ChartItem::Var(_) => {}
+    }
 }
 
 /// The lists of statements within a statement, one level down.

@@ -3,20 +3,38 @@
 use std::collections::BTreeMap;
 
 use g7_model::{
-    Arg, BinaryOp, Expr, ExprKind, Function, Literal, Operands, Path, StandardFunction, Type, UnaryOp,
+    Arg, BinaryOp, Expr, ExprKind, Function, Literal, Name, Operands, Path, StandardFunction, Type, UnaryOp,
+    ValueType, VarDecl, VarKind,
 };
 
 use super::bits;
 use super::builtin;
 use super::composed::Running;
-use super::model::{Model, ScopeId, StepId, VarId, is_name};
-use super::named::number_of;
+use super::model::{FILE, Model, ScopeId, StepId, VarId, is_name};
+use super::named::{held, number_of};
 use super::resolve::Ref;
 use super::state::State;
 use super::value::{NaiveFault, Run, Typed, Value, bad, binary, negate, zero};
 
 /// The local variables of a running function, section or action body.
-pub(super) type Frame = BTreeMap<String, (Type, Value)>;
+pub(super) type Frame = BTreeMap<String, Slot>;
+
+/// A local variable.
+#[derive(Clone)]
+pub(super) struct Slot {
+    pub(super) ty: Type,
+    pub(super) value: Value,
+    /// Its bounds.
+    pub(super) range: Option<(i128, i128)>,
+}
+
+impl Slot {
+    /// Gives it a value, or fails if its bounds forbid that.
+    pub(super) fn set(&mut self, value: &Typed) -> Run<()> {
+        self.value = held(self.range, value.to(self.ty)?)?;
+        Ok(())
+    }
+}
 
 /// Evaluates expressions and runs statements on a state.
 pub(super) struct Exec<'a> {
@@ -117,9 +135,9 @@ impl<'a> Exec<'a> {
 
     fn local(&self, p: &Path) -> Option<Run<Typed>> {
         let (first, rest) = p.names.split_first()?;
-        let (ty, v) = self.frames.last()?.get(&*first.text)?;
-        match (rest, v) {
-            ([], _) => Some(Ok(Typed::of(*ty, v.clone()))),
+        let Slot { ty, value, .. } = self.frames.last()?.get(&*first.text)?;
+        match (rest, value) {
+            ([], _) => Some(Ok(Typed::of(*ty, value.clone()))),
             ([member], Value::Fb(f)) => Some(member_of(f, &member.text)),
             ([k], Value::Int(n)) => Some(Ok(Typed::bool(bits::bit(*n, k.text.parse().ok()?)))),
             _ => None,
@@ -171,13 +189,14 @@ impl<'a> Exec<'a> {
 
     fn section(&mut self, scope: ScopeId, name: &str) -> Run<Typed> {
         let Some(section) = self.m.scopes[scope].sections.get(name) else { return bad("no such section") };
-        let mut frame = Frame::from([(name.to_owned(), (Type::Bool, Value::Bool(false)))]);
+        let mut frame =
+            Frame::from([(name.to_owned(), Slot { ty: Type::Bool, value: Value::Bool(false), range: None })]);
         self.locals(scope, &section.body, &mut frame)?;
         self.frames.push(frame);
         let ran = self.block(scope, &section.body.statements);
         let frame = self.frames.pop().unwrap_or_default();
         ran?;
-        Ok(Typed::bool(frame.get(name).is_some_and(|(_, v)| *v == Value::Bool(true))))
+        Ok(Typed::bool(frame.get(name).is_some_and(|slot| slot.value == Value::Bool(true))))
     }
 
     pub(super) fn call(&mut self, scope: ScopeId, path: &Path, args: &[Arg]) -> Run<Typed> {
@@ -225,20 +244,24 @@ impl<'a> Exec<'a> {
             let by_name = args.iter().find(|a| a.name.as_ref().is_some_and(|n| n.text == param.name.text));
             let by_place = args.get(i).filter(|a| a.name.is_none());
             let value = match by_name.or(by_place) {
-                Some(arg) => self.eval_for(scope, &arg.value, param.ty)?,
-                None => zero(param.ty),
+                Some(arg) => Some(self.eval(scope, &arg.value)?),
+                None => None,
             };
-            frame.insert(param.name.text.to_string(), (param.ty, value));
+            let mut slot = self.slot_of(&param.name, &param.ty)?;
+            if let Some(value) = value {
+                slot.set(&value)?;
+            }
+            frame.insert(param.name.text.to_string(), slot);
         }
         let name = f.name.text.to_string();
-        frame.insert(name.clone(), (f.result, zero(f.result)));
+        frame.insert(name.clone(), self.slot_of(&f.name, &f.result)?);
         self.locals(scope, &f.body, &mut frame)?;
         self.frames.push(frame);
-        let ran = self.block(super::model::FILE, &f.body.statements);
+        let ran = self.block(FILE, &f.body.statements);
         let mut frame = self.frames.pop().unwrap_or_default();
         ran?;
         match frame.remove(&name) {
-            Some((ty, v)) => Ok(Typed::of(ty, v)),
+            Some(slot) => Ok(Typed::of(slot.ty, slot.value)),
             None => bad("a function without result"),
         }
     }
@@ -246,20 +269,34 @@ impl<'a> Exec<'a> {
     /// Declares the local variables of a block, with their initial values.
     pub(super) fn locals(&mut self, scope: ScopeId, block: &g7_model::Block, frame: &mut Frame) -> Run<()> {
         for local in &block.locals {
-            let value = match &local.init {
-                Some(e) => {
-                    self.frames.push(frame.clone());
-                    let value = self.eval_for(scope, e, local.ty);
-                    self.frames.pop();
-                    value?
-                }
-                None => zero(local.ty),
-            };
+            let Some(first) = local.names.first() else { continue };
+            let mut slot = self.slot_of(first, &local.ty)?;
+            if let Some(e) = &local.init {
+                self.frames.push(frame.clone());
+                let value = self.eval(scope, e);
+                self.frames.pop();
+                slot.set(&value?)?;
+            }
             for name in &local.names {
-                frame.insert(name.text.to_string(), (local.ty, value.clone()));
+                frame.insert(name.text.to_string(), slot.clone());
             }
         }
         Ok(())
+    }
+
+    /// A local variable of a type, with the value that it begins with.
+    fn slot_of(&mut self, name: &Name, ty: &ValueType) -> Run<Slot> {
+        let own = self.m.with_type(&VarDecl::of_type(VarKind::Var, vec![name.clone()], ty, name.at));
+        let range = self.m.range(FILE, &own);
+        let mut slot = Slot { ty: own.ty, value: zero(own.ty), range };
+        if let Some(e) = &own.init {
+            // The value of a type names nothing of a body.
+            let frames = std::mem::take(&mut self.frames);
+            let value = self.eval(FILE, e);
+            self.frames = frames;
+            slot.set(&value?)?;
+        }
+        Ok(slot)
     }
 
     /// Counts one loop iteration.

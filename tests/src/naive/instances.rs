@@ -71,7 +71,7 @@ fn own_charts<'d>(doc: &'d Document, item: &'d Item) -> Run<Vec<Made<'d>>> {
             }
             let constants = chart.params.iter().zip(values).map(|(p, value)| VarDecl {
                 init: Some(value),
-                ..VarDecl::new(VarKind::Const, vec![p.name.clone()], p.ty, i.at)
+                ..VarDecl::of_type(VarKind::Const, vec![p.name.clone()], &p.ty, i.at)
             });
             Ok(Made { chart, name, constants: constants.collect(), home: None })
         })

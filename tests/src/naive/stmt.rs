@@ -3,7 +3,7 @@
 use g7_model::{Arg, Block, CaseArm, Expr, ExprKind, Path, Stmt, StmtKind, Type, Work};
 
 use super::bits;
-use super::exec::{Exec, Frame};
+use super::exec::{Exec, Frame, Slot};
 use super::instances::chart_written;
 use super::model::ScopeId;
 use super::named::held;
@@ -216,13 +216,13 @@ impl Exec<'_> {
 
     fn assign_local(&mut self, p: &Path, value: &Typed) -> Option<Run<()>> {
         let (first, rest) = p.names.split_first()?;
-        let (ty, slot) = self.frames.last_mut()?.get_mut(&*first.text)?;
-        match (rest, &mut *slot) {
-            ([], _) => Some(value.to(*ty).map(|v| *slot = v)),
+        let slot = self.frames.last_mut()?.get_mut(&*first.text)?;
+        match (rest, &mut slot.value) {
+            ([], _) => Some(slot.set(value)),
             ([member], Value::Fb(f)) => Some(set_member(f, &member.text, value)),
             ([k], Value::Int(n)) => {
                 let k = k.text.parse().ok()?;
-                Some(value.truth().map(|on| *n = bits::replaced(*ty, *n, k, on)))
+                Some(value.truth().map(|on| *n = bits::replaced(slot.ty, *n, k, on)))
             }
             _ => None,
         }
@@ -277,7 +277,7 @@ impl Exec<'_> {
 
     fn instance(&self, scope: ScopeId, path: &Path) -> Option<Instance> {
         if let [one] = &path.names[..]
-            && let Some((Type::Fb(_), _)) = self.frames.last().and_then(|f| f.get(&*one.text))
+            && let Some(Slot { ty: Type::Fb(_), .. }) = self.frames.last().and_then(|f| f.get(&*one.text))
         {
             return Some(Instance::Local(one.text.to_string()));
         }
@@ -289,7 +289,7 @@ impl Exec<'_> {
 
     fn slot(&mut self, instance: &Instance) -> Option<&mut Value> {
         match instance {
-            Instance::Local(name) => self.frames.last_mut()?.get_mut(name).map(|l| &mut l.1),
+            Instance::Local(name) => self.frames.last_mut()?.get_mut(name).map(|l| &mut l.value),
             Instance::Var(v) => self.s.vars.get_mut(*v),
         }
     }

@@ -278,8 +278,11 @@ impl<'d> Maker<'d> {
             let track = if most > least { say!(", and perhaps its position") } else { Said::default() };
             bad(say!("each part of `{}` has {least} attribute(s){track}", p.name.text));
         }
-        if let Some(a) = p.attributes.iter().find(|a| matches!(a.ty, Type::String(_) | Type::Fb(_))) {
-            return bad(say!("a part cannot carry a {}", a.ty));
+        if let Some(a) = p.attributes.iter().find(|a| !a.ty.is_plain()) {
+            return bad(say!("the attribute `{}` of a part has a type of the language", a.name.text));
+        }
+        if let Some(a) = p.attributes.iter().find(|a| matches!(a.ty.base, Type::String(_) | Type::Fb(_))) {
+            return bad(say!("a part cannot carry a {}", a.ty.base));
         }
         let table = Table { parts: p };
         self.vars.extend(table.declare());

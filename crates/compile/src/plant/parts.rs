@@ -30,7 +30,7 @@ impl<'d> Table<'d> {
     }
 
     pub(super) fn attributes(&self) -> impl Iterator<Item = (&'d str, Type)> {
-        self.parts.attributes.iter().map(|a| (&*a.name.text, a.ty))
+        self.parts.attributes.iter().map(|a| (&*a.name.text, a.ty.base))
     }
 
     /// Everything a part has: its attributes, and its position on a track.

@@ -4,7 +4,7 @@ use g7_engine::{Addr, Code};
 use g7_model::named::declared;
 use g7_model::{Document, Expr, Plant, Problem, ProfileName, Severity, Type, codes};
 
-use super::{document, driven};
+use super::{document, driven, plants};
 use crate::{Compiled, compile_with};
 
 /// A plant that can be run beside the charts.
@@ -62,6 +62,7 @@ pub fn compile_plant(
     queries: &[Expr],
 ) -> (Option<PlantProgram>, Vec<Problem>) {
     let (typed, _) = declared(doc); // Its problems are those of the charts.
+    let plant = plants(&typed).find(|p| p.at.0 == plant.at.0).unwrap_or(plant);
     let (made, mut problems) = document(&typed, plant, &charts.unit, queries);
     let mut asked = made.queries;
     asked.extend(made.bindings.iter().map(|(_, _, value)| value.clone()));

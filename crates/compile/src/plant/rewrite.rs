@@ -252,10 +252,11 @@ impl Rewrite<'_> {
             for name in &local.names {
                 let at = At(name.at);
                 let hidden = format!("@{}.{}", name.text, self.hidden.len());
-                let mut decl = at.declare(VarKind::Var, &hidden, local.ty, None);
+                let mut decl = at.declare(VarKind::Var, &hidden, local.ty.base, None);
+                decl.limits.clone_from(&local.ty.limits);
                 decl.at = local.at;
                 self.hidden.push(decl);
-                let first = match local.ty {
+                let first = match local.ty.base {
                     Type::Fb(_) => None,
                     Type::String(_) => Some(at.expr(ExprKind::Literal(Literal::Str("".into())))),
                     ty => Some(at.zero(ty)),

@@ -205,7 +205,10 @@ impl<'d> Types<'d> {
     pub fn kind_of(&self, member: &Member<'_>) -> Kind<'d> {
         match member.declared {
             Declared::Var(v) | Declared::InOut(v) => self.kind(v),
-            Declared::Local(l) => Kind::Plain(l.ty),
+            Declared::Local(l) => match &l.ty.of {
+                Some(of) => self.kind_named(&of.text, 0),
+                None => Kind::Plain(l.ty.base),
+            },
         }
     }
 

@@ -6,8 +6,8 @@ use g7_model::instances::{own_instances, uninstantiated};
 use g7_model::visit::Visitor;
 use g7_model::{
     Arg, Block, Chart, ChartItem, Composed, Document, Expr, ExprKind, Index, Instance, InstanceNames, Item,
-    Limits, Name, Order, Path, Placed, Plant, Situation, Span, Step, StepKind, Transition, VarDecl, chart_in,
-    instance_of, slot_of,
+    Name, Order, Path, Placed, Plant, Situation, Span, Step, StepKind, Transition, ValueType, VarDecl,
+    chart_in, instance_of, slot_of,
 };
 
 use super::members::{Kind, Member, Types, values};
@@ -274,6 +274,8 @@ impl<'d> Walk<'_, 'd> {
             Item::Section(s) => self.section(None, s),
             Item::Function(f) => {
                 self.name(&f.name, Some(Definition::Function(f.name.text.to_string())), Written::Declared);
+                self.params(&f.params);
+                self.value_type(&f.result);
                 let mut own: HashSet<&str> = f.params.iter().map(|p| &*p.name.text).collect();
                 own.insert(&f.name.text);
                 self.locals.push(own);
@@ -335,16 +337,17 @@ impl<'d> Walk<'_, 'd> {
 
     /// All of a declaration but the names that it declares.
     fn declaration(&mut self, v: &'d VarDecl) {
-        if let Some(of) = &v.of {
-            let known = self.types.has(&of.text).then(|| Definition::Type(of.text.to_string()));
-            self.name(of, known, Written::Name);
-        }
+        v.of.iter().for_each(|of| self.type_name(of));
         self.exprs(v.array.iter().flat_map(|a| a.bounds()));
-        if let Some(Limits::Range(least, most)) = v.limits.as_deref() {
-            self.exprs([least, most]);
-        }
+        v.limits.iter().for_each(|l| self.limits(l));
         v.init.iter().for_each(|e| self.initial(e, self.types.kind(v)));
         self.exprs(&v.safe);
+    }
+
+    /// The name of a type where something is of that type.
+    fn type_name(&mut self, of: &Name) {
+        let known = self.types.has(&of.text).then(|| Definition::Type(of.text.to_string()));
+        self.name(of, known, Written::Name);
     }
 
     /// An initial value, `(speed := 2.0)` or a list of such for a variable with members.
@@ -429,6 +432,7 @@ impl<'d> Walk<'_, 'd> {
             let known = self.block.map(|of| Definition::Type(of.name.text.to_string()));
             self.name(block, known, Written::Name);
         }
+        self.params(&chart.params);
         for param in &chart.params {
             let def = Definition::Variable { chart: Some(home.clone()), name: param.name.text.to_string() };
             self.add(param.name.at.0, def, Written::Declared);
@@ -509,6 +513,11 @@ impl<'d> Walk<'_, 'd> {
 impl<'d> Visitor<'d> for Walk<'_, 'd> {
     fn path(&mut self, names: &'d [Name]) {
         self.add_path(names);
+    }
+
+    fn value_type(&mut self, ty: &'d ValueType) {
+        ty.of.iter().for_each(|of| self.type_name(of));
+        ty.limits.iter().for_each(|l| self.limits(l));
     }
 
     fn call(&mut self, path: &'d Path, args: &'d [Arg]) {

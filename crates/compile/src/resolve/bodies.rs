@@ -38,12 +38,12 @@ impl<'d> Resolver<'_, 'd> {
         let name = &function.name.text;
         let mut params = Vec::new();
         for p in &function.params {
-            self.plain_type(p.ty, p.name.at.0, say!("an input"));
+            self.plain_type(p.ty.base, p.name.at.0, say!("an input"));
             let qualified = format!("{name}.{}", p.name.text).into();
-            params.push(self.add_var(qualified, VarClass::Local, p.ty, p.name.at.0));
+            params.push(self.add_var(qualified, VarClass::Local, p.ty.base, p.name.at.0));
         }
-        self.plain_type(function.result, at, say!("the result"));
-        let result = self.add_var(name.clone(), VarClass::Local, function.result, at);
+        self.plain_type(function.result.base, at, say!("the result"));
+        let result = self.add_var(name.clone(), VarClass::Local, function.result.base, at);
         self.scopes.params.push(function.params.iter().map(|p| &*p.name.text).collect());
         self.unit.functions.push(Function { name: name.clone(), params, result, statements: Vec::new(), at });
     }

@@ -27,14 +27,14 @@ impl Resolver<'_, '_> {
             let value = match &local.init {
                 // The value is resolved before the names of the variables are known, so it cannot
                 // refer to them.
-                Some(e) => self.value(e, local.ty),
+                Some(e) => self.value(e, local.ty.base),
                 None => {
-                    let kind = ExprKind::Const(super::resolver::zero(local.ty));
-                    Some(Expr { kind, ty: local.ty, at: local.at.0 })
+                    let kind = ExprKind::Const(super::resolver::zero(local.ty.base));
+                    Some(Expr { kind, ty: local.ty.base, at: local.at.0 })
                 }
             };
             for name in &local.names {
-                let v = self.declare_local(name, local.ty, owner);
+                let v = self.declare_local(name, local.ty.base, owner);
                 if let (Some(v), Some(value)) = (v, &value) {
                     let kind = StmtKind::Assign(Target::Var(v), value.clone());
                     statements.push(Stmt { kind, at: name.at.0 });

@@ -258,7 +258,7 @@ fn helper(helper: Helper, at: Span) -> Function {
     let op = |kind: BinaryOp, a: Expr, b: Expr| binary(kind, a, b, at);
     let local = |name: &str, ty: Type, init: Option<i128>| Local {
         names: vec![Name::new(name, at)],
-        ty,
+        ty: ty.into(),
         init: init.map(number),
         at: at.into(),
     };
@@ -310,11 +310,11 @@ fn helper(helper: Helper, at: Span) -> Function {
             (title, locals, statements)
         }
     };
-    let param = |name: &str| Param { name: Name::new(name, at), ty: Type::Dint };
+    let param = |name: &str| Param { name: Name::new(name, at), ty: Type::Dint.into() };
     Function {
         name: Name::new(title, at),
         params: vec![param("a"), param("b")],
-        result: Type::Dint,
+        result: Type::Dint.into(),
         body: Block { locals, statements, at: at.into() },
         at: at.into(),
     }

@@ -101,7 +101,7 @@ impl Vars<'_> {
         let choice = StmtKind::Case(name(&["n"], at), arms.collect(), Vec::new());
         let body = nodes::block(vec![Stmt { kind: choice, at: at.into() }], at);
         let result = if kind >= kind::FIRST_WORD { Type::Dint } else { Type::Bool };
-        let params = vec![Param { name: Name::new("n", at), ty: Type::Dint }];
-        Some(Function { name: Name::new(title, at), params, result, body, at: at.into() })
+        let params = vec![Param { name: Name::new("n", at), ty: Type::Dint.into() }];
+        Some(Function { name: Name::new(title, at), params, result: result.into(), body, at: at.into() })
     }
 }

@@ -123,9 +123,15 @@ impl Bench {
 
     /// One scan.
     pub(crate) fn scan(&mut self) -> &mut Bench {
-        g7_engine::scan(&self.compiled.program, &mut self.state, &self.inputs, self.now).expect("no fault");
-        self.now += self.cycle;
+        self.try_scan().expect("no fault");
         self
+    }
+
+    /// One scan, which may end with a fault.
+    pub(crate) fn try_scan(&mut self) -> Result<(), g7_engine::Fault> {
+        g7_engine::scan(&self.compiled.program, &mut self.state, &self.inputs, self.now)?;
+        self.now += self.cycle;
+        Ok(())
     }
 
     /// Scans until so many milliseconds have gone by.

@@ -159,7 +159,7 @@ impl<'d> Walk<'d> {
     fn of_call(&self, path: &Path, args: &[Arg]) -> Option<Type> {
         let [name] = path.names.as_slice() else { return None };
         if let Some(f) = self.function(name) {
-            return Some(f.result);
+            return Some(f.result.base);
         }
         if let Some((_, to)) = conversion(&name.text) {
             return Some(to);
@@ -299,8 +299,8 @@ impl<'d> Walk<'d> {
         let known = args.iter().filter_map(|a| self.type_of(&a.value)).reduce(joined);
         for (n, arg) in args.iter().enumerate() {
             let named = |f: &Function| match &arg.name {
-                Some(name) => f.params.iter().find(|p| p.name.text == name.text).map(|p| p.ty),
-                None => f.params.get(n).map(|p| p.ty),
+                Some(name) => f.params.iter().find(|p| p.name.text == name.text).map(|p| p.ty.base),
+                None => f.params.get(n).map(|p| p.ty.base),
             };
             let parameter = match (function, block, standard) {
                 (Some(f), _, _) => named(f),
@@ -402,7 +402,7 @@ impl<'d> Visitor<'d> for Walk<'d> {
 
     fn block(&mut self, block: &'d Block) {
         for local in &block.locals {
-            local.init.iter().for_each(|e| self.read(e, Some(local.ty)));
+            local.init.iter().for_each(|e| self.read(e, Some(local.ty.base)));
         }
         self.statements(&block.statements);
     }

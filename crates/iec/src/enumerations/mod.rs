@@ -22,7 +22,8 @@ mod walk;
 use std::collections::BTreeMap;
 
 use g7_model::{
-    ChartItem, Document, Expr, ExprKind, Item, Limits, Problem, Span, Type, VarDecl, VarKind, codes, say,
+    ChartItem, Document, Expr, ExprKind, Item, Limits, Local, Name, Problem, Span, Type, ValueType, VarDecl,
+    VarKind, codes, say, visit_mut,
 };
 
 use crate::nodes;
@@ -114,9 +115,47 @@ impl Settler<'_> {
                 Item::Composed(c) => {
                     c.members.iter_mut().chain(&mut c.inouts).for_each(|v| self.declaration(v));
                 }
+                Item::Function(f) => {
+                    f.params.iter_mut().for_each(|p| self.value_type(&mut p.ty));
+                    self.value_type(&mut f.result);
+                }
                 _ => {}
             }
+            visit_mut::blocks(item, &mut |block| block.locals.iter_mut().for_each(|l| self.local(l)));
         }
+    }
+
+    /// A parameter or a result.
+    fn value_type(&self, ty: &mut ValueType) {
+        self.of_type(&mut ty.base, &mut ty.of, &mut ty.limits);
+    }
+
+    fn local(&self, local: &mut Local) {
+        if let Some(place) = self.of_type(&mut local.ty.base, &mut local.ty.of, &mut local.ty.limits) {
+            local.init.take_if(|e| self.is_usual(place, e));
+        }
+    }
+
+    /// The type of a variable whose enumeration stays names that one, which is returned; of any other, it is that of the
+    /// numbers.
+    fn of_type(
+        &self,
+        ty: &mut Type,
+        of: &mut Option<Box<Name>>,
+        limits: &mut Option<Box<Limits>>,
+    ) -> Option<usize> {
+        let Limits::Of(name) = *limits.take_if(|l| matches!(**l, Limits::Of(_)))? else { return None };
+        let place = self.table.place(&name.text)?;
+        let own = self.table.all.get(place).filter(|_| !self.numbers.contains_key(&place))?;
+        *ty = Type::Bool;
+        *of = Some(Box::new(own.name.clone()));
+        Some(place)
+    }
+
+    /// True for the value that the variables of an enumeration begin with.
+    fn is_usual(&self, place: usize, e: &Expr) -> bool {
+        let usual = self.table.all.get(place).map(|own| own.usual);
+        self.value(place, e).is_some_and(|v| Some(v.number) == usual)
     }
 
     /// A constant for each value of an enumeration.
@@ -125,7 +164,7 @@ impl Settler<'_> {
         let constant = |value: &Value| {
             let at = value.name.at;
             let init = Some(nodes::int(value.number, at.0));
-            let names = vec![g7_model::Name { text: value.constant.clone(), at }];
+            let names = vec![Name { text: value.constant.clone(), at }];
             Item::Var(VarDecl { init, ..VarDecl::new(VarKind::Const, names, own.ty, at) })
         };
         own.values.iter().map(constant).collect()
@@ -150,16 +189,8 @@ impl Settler<'_> {
     }
 
     fn declaration(&self, decl: &mut VarDecl) {
-        let Some(Limits::Of(of)) = decl.limits.take_if(|l| matches!(**l, Limits::Of(_))).map(|l| *l) else {
-            return;
-        };
-        let Some(place) = self.table.place(&of.text) else { return };
-        let Some(own) = self.table.all.get(place).filter(|_| !self.numbers.contains_key(&place)) else {
-            return;
-        };
-        decl.ty = Type::Bool;
-        decl.of = Some(Box::new(own.name.clone()));
-        let usual = |e: &Expr| self.value(place, e).is_some_and(|v| v.number == own.usual);
+        let Some(place) = self.of_type(&mut decl.ty, &mut decl.of, &mut decl.limits) else { return };
+        let usual = |e: &Expr| self.is_usual(place, e);
         let same = match decl.init.as_ref().map(|e| (e, &e.kind)) {
             Some((_, ExprKind::List(values))) => values.iter().all(|(_, e)| usual(e)),
             Some((e, _)) => usual(e),

@@ -1,7 +1,7 @@
 //! The forms of expressions: values and variables of enumerations, and numbers beside them. `walk` brings each to its
 //! place.
 
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 
 use g7_model::{
     Arg, BinaryOp, Expr, ExprKind, Name, Path, Problem, Span, StandardFunction, Type, codes, say,
@@ -61,8 +61,8 @@ pub(super) struct Walker<'a> {
     pub(super) found: BTreeMap<usize, (Span, Why)>,
     pub(super) problems: Vec<Problem>,
     pub(super) home: Home,
-    /// The local variables and parameters, which are numbers.
-    pub(super) locals: HashSet<Box<str>>,
+    /// The local variables and parameters, and the result of a function.
+    pub(super) locals: HashMap<Box<str>, Declared>,
 }
 
 impl<'a> Walker<'a> {
@@ -72,7 +72,7 @@ impl<'a> Walker<'a> {
         numbers: &'a BTreeMap<usize, (Span, Why)>,
     ) -> Walker<'a> {
         let (found, problems) = (BTreeMap::new(), Vec::new());
-        Walker { table, variables, numbers, found, problems, home: Home::File, locals: HashSet::new() }
+        Walker { table, variables, numbers, found, problems, home: Home::File, locals: HashMap::new() }
     }
 
     pub(super) fn plain(&mut self, e: &mut Expr) {
@@ -264,7 +264,7 @@ impl<'a> Walker<'a> {
 
     /// True if a local variable or a parameter hides the first name.
     pub(super) fn is_local(&self, names: &[Name]) -> bool {
-        names.first().is_some_and(|n| self.locals.contains(&n.text))
+        names.first().is_some_and(|n| self.locals.contains_key(&n.text))
     }
 
     pub(super) fn kind(&self, declared: &Declared) -> Kind {
@@ -278,8 +278,8 @@ impl<'a> Walker<'a> {
     }
 
     pub(super) fn variable(&self, names: &[Name]) -> Kind {
-        if self.is_local(names) {
-            return Kind::Other;
+        if let Some(local) = names.first().and_then(|n| self.locals.get(&n.text)) {
+            return if names.len() == 1 { self.kind(local) } else { Kind::Other };
         }
         self.variables.declared(&self.home, names).map_or(Kind::Other, |d| self.kind(d))
     }
@@ -336,6 +336,7 @@ impl<'a> Walker<'a> {
             },
             ExprKind::Element(path, _, None) => self.variable(&path.names).hint(),
             ExprKind::Call(_, args) if choice(e).is_some() => args.iter().find_map(|a| self.peek(&a.value)),
+            ExprKind::Call(path, _) => self.kind(&self.variables.function(path)?.result).hint(),
             _ => None,
         }
     }
@@ -351,6 +352,13 @@ impl<'a> Walker<'a> {
 
     fn call(&mut self, path: &Path, args: &mut [Arg], hint: Option<usize>) -> Kind {
         use StandardFunction as F;
+        if let Some(function) = self.variables.function(path) {
+            for (place, arg) in args.iter_mut().enumerate() {
+                let wanted = function.parameter(arg, place).map_or(Kind::Other, |p| self.kind(p));
+                self.given(&mut arg.value, wanted);
+            }
+            return self.kind(&function.result);
+        }
         let function = match path.names.as_slice() {
             [name] => F::named(&name.text),
             _ => None,

@@ -3,11 +3,11 @@
 
 use g7_model::{
     Action, ActionKind, Arg, Block, Body, CaseArm, Chart, ChartItem, Document, Expr, ExprKind, Function,
-    Item, Limits, Path, Stmt, StmtKind, Target, VarDecl, Work,
+    Item, Limits, Name, Path, Stmt, StmtKind, Target, VarDecl, Work,
 };
 
 use super::values::{Kind, Walker, Wanted};
-use crate::variables::Home;
+use crate::variables::{Home, of_value};
 
 impl Walker<'_> {
     pub(super) fn document(&mut self, document: &mut Document) {
@@ -31,8 +31,8 @@ impl Walker<'_> {
     }
 
     fn function(&mut self, f: &mut Function) {
-        let own = f.params.iter().map(|p| &p.name).chain([&f.name]);
-        self.locals = own.map(|n| n.text.clone()).collect();
+        let own = f.params.iter().map(|p| (&p.name, &p.ty)).chain([(&f.name, &f.result)]);
+        self.locals = own.map(|(name, ty)| (name.text.clone(), of_value(ty))).collect();
         self.block(&mut f.body);
         self.locals.clear();
     }
@@ -101,8 +101,14 @@ impl Walker<'_> {
 
     fn block(&mut self, block: &mut Block) {
         let before = self.locals.clone();
-        block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.plain(e));
-        self.locals.extend(block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone()));
+        for local in &mut block.locals {
+            let wanted = self.kind(&of_value(&local.ty));
+            local.init.iter_mut().for_each(|e| self.given(e, wanted));
+        }
+        for local in &block.locals {
+            let named = |n: &Name| (n.text.clone(), of_value(&local.ty));
+            self.locals.extend(local.names.iter().map(named));
+        }
         self.statements(&mut block.statements);
         self.locals = before;
     }
@@ -192,7 +198,7 @@ impl Walker<'_> {
     }
 
     /// The value that a variable or a parameter gets.
-    fn given(&mut self, value: &mut Expr, to: Kind) {
+    pub(super) fn given(&mut self, value: &mut Expr, to: Kind) {
         if !matches!(to, Kind::Array(_)) {
             return self.expect_near(value, self.wanted(to.of(), Wanted::Plain), to.hint());
         }

@@ -336,7 +336,7 @@ impl<'a> Reader<'_, 'a> {
             };
             for variable in &section.variables {
                 made.extend(if plain {
-                    self.declared(*variable, section, kind)
+                    self.declared(*variable, section, kind, pou.kind == PouKind::Function)
                 } else {
                     self.typed(*variable, kind)
                 });
@@ -345,12 +345,13 @@ impl<'a> Reader<'_, 'a> {
         made
     }
 
-    /// A variable of a function or function block with its whole declaration.
+    /// A variable of a function or function block with its whole declaration. Inputs of a function keep their limits.
     fn declared(
         &mut self,
         variable: Xml<'a>,
         of: &super::read::Section,
         section: Section,
+        function: bool,
     ) -> Option<Variable> {
         let (name, shape) = self.shape(variable)?;
         let mut decl = self.shapes.declaration(variable, &name, &shape, self.report);
@@ -362,7 +363,9 @@ impl<'a> Reader<'_, 'a> {
         };
         decl.retain = of.retain && decl.kind == VarKind::Var;
         decl.address = address(variable, self.report);
-        st::fit(&mut decl).into_iter().for_each(|p| self.report.put(p));
+        if !(function && section == Section::Input) {
+            st::fit(&mut decl).into_iter().for_each(|p| self.report.put(p));
+        }
         Some(Variable { section, decl, unknown: shape.unknown().cloned() })
     }
 }

@@ -9,8 +9,8 @@
 use std::collections::HashSet;
 
 use g7_model::{
-    Block, Body, Composed, Limits, Local, Name, Problem, Said, Span, Stmt, StmtKind, Type, VarDecl, VarKind,
-    codes, say,
+    Block, Body, Composed, Local, Name, Problem, Said, Span, Stmt, StmtKind, Type, VarDecl, VarKind, codes,
+    say,
 };
 
 use super::unit::{Part, Source, Unit, UnitKind};
@@ -73,7 +73,7 @@ fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mu
                 decl.kind = VarKind::Var;
                 inouts.push(decl);
             }
-            Section::Temp if is_local(&decl) => locals.push(local(decl, report)),
+            Section::Temp if is_local(&decl) => locals.push(local(decl)),
             Section::Temp | Section::Local | Section::Global | Section::Input | Section::Output => {
                 if section == Section::Temp {
                     let name = decl.names.first().map_or("", |n| &*n.text);
@@ -96,14 +96,9 @@ fn composed(source: &mut Source, used: &HashSet<String>, unit: Unit, report: &mu
     Composed { name: unit.name, comment: None, members, inouts, block: true, body: Some(body), at }
 }
 
-/// A local variable of a body. It has no limits, and one of an enumeration is a number.
-pub(super) fn local(decl: VarDecl, report: &mut Report) -> Local {
-    if matches!(decl.limits.as_deref(), Some(Limits::Range(..))) {
-        let name = decl.names.first().map_or("", |n| &*n.text);
-        let what = say!("the limits of the local variable `{name}` are not checked");
-        report.put(Problem::new(&codes::LEFT_OUT, decl.at.0, what));
-    }
-    Local { names: decl.names, ty: decl.ty, init: decl.init, at: decl.at }
+/// A local variable of a body.
+pub(super) fn local(decl: VarDecl) -> Local {
+    Local { ty: decl.value_type(), names: decl.names, init: decl.init, at: decl.at }
 }
 
 /// True if a variable can be a local one of a body.

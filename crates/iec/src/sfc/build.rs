@@ -5,8 +5,8 @@ use std::collections::{HashMap, HashSet};
 use g7_model::codes;
 use g7_model::{
     Action, ActionKind, BinaryOp, Block, Body, Chart, ChartItem, ChartKind, Composed, Document, Expr,
-    ExprKind, Function, Item, Limits, Literal, Name, NamedAction, Nanos, Param, Problem, Profile,
-    ProfileName, Step, StepKind, Stmt, Target, Transition as Written, VarDecl, VarKind, say,
+    ExprKind, Function, Item, Literal, Name, NamedAction, Nanos, Param, Problem, Profile, ProfileName, Step,
+    StepKind, Stmt, Target, Transition as Written, VarDecl, VarKind, say,
 };
 
 use super::blocks::{foreign, local, lost_actions, no_type};
@@ -394,11 +394,7 @@ fn known_type(source: &Source, variable: &Variable, report: &mut Report) -> bool
 /// The function of a unit; None if it has no result.
 pub(crate) fn function(source: &Source, unit: &Unit, report: &mut Report) -> Option<Function> {
     let given = &unit.result.as_ref()?.decl;
-    if matches!(given.limits.as_deref(), Some(Limits::Range(..))) {
-        let what = say!("the limits of the result of `{}` are not checked", unit.name.text);
-        report.put(Problem::new(&codes::LEFT_OUT, given.at.0, what));
-    }
-    let result = given.ty;
+    let result = given.value_type();
     foreign(unit, report);
     let mut params = Vec::new();
     let mut locals = Vec::new();
@@ -409,9 +405,11 @@ pub(crate) fn function(source: &Source, unit: &Unit, report: &mut Report) -> Opt
         let decl = &variable.decl;
         match variable.section {
             Section::Input => {
-                params.extend(decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.ty }));
+                params.extend(
+                    decl.names.iter().map(|name| Param { name: name.clone(), ty: decl.value_type() }),
+                );
             }
-            _ => locals.push(local(decl.clone(), report)),
+            _ => locals.push(local(decl.clone())),
         }
     }
     let statements: Vec<Stmt> = unit.body.clone();

@@ -82,6 +82,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
         }
     }
     let mut unit = Unit { result, ..Unit::new(kind, name, p.since(start)) };
+    p.of_function = kind == UnitKind::Function;
     loop {
         let before = p.mark();
         while p.eat(";") {}
@@ -97,6 +98,7 @@ fn unit(p: &mut Parser, kind: UnitKind, source: &mut Source) {
             p.bump();
         }
     }
+    p.of_function = false;
     unit.foreign = p.foreign(start);
     if p.word() != closing && closes(&p.word()) && !p.at_end() {
         p.expected(say!("`{closing}`"));

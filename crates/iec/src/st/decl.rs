@@ -159,7 +159,9 @@ impl Parser<'_> {
             let unknown = shape.unknown().cloned();
             decl.kind = kind(head, &decl, address.as_ref());
             decl.address = address;
-            fit(&mut decl).into_iter().for_each(|p| self.report.put(p));
+            if !(self.of_function && head.section == Section::Input) {
+                fit(&mut decl).into_iter().for_each(|p| self.report.put(p));
+            }
             decl.retain = head.retain && decl.kind == VarKind::Var;
             decl.comment.clone_from(&comment);
             found.push(Variable { section: head.section, decl, unknown });

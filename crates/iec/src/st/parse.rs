@@ -31,6 +31,8 @@ pub(crate) struct Parser<'a> {
     nested: u32,
     /// True if an element of an array becomes a variable with a name such as `a[1]`.
     pub(super) single: bool,
+    /// True in a function, whose inputs keep their limits.
+    pub(crate) of_function: bool,
     /// The token at which the last problem was reported.
     told: Option<usize>,
 }
@@ -48,6 +50,7 @@ impl<'a> Parser<'a> {
             report,
             nested: 0,
             single: false,
+            of_function: false,
             told: None,
         }
     }

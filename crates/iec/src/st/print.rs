@@ -252,7 +252,7 @@ impl Writer<'_> {
         let upper = name.to_ascii_uppercase();
         let alike = matches!(upper.as_str(), "MIN" | "MAX" | "LIMIT" | "SEL");
         let ty = match own {
-            Some(own) => Ty::Known(own.result),
+            Some(own) => Ty::Known(own.result.base),
             None => standard_type(&upper, common),
         };
         let mut parts = Vec::new();
@@ -461,7 +461,7 @@ fn parameter(function: &Function, place: usize, arg: &Arg) -> Option<Type> {
         Some(name) => function.params.iter().find(|p| p.name.text.eq_ignore_ascii_case(&name.text)),
         None => function.params.get(place),
     };
-    found.map(|p| p.ty)
+    found.map(|p| p.ty.base)
 }
 
 /// The type of the result of a standard function.

@@ -199,7 +199,7 @@ impl<'d> Lower<'d> {
         for p in &f.params {
             let text = self.names.inner(&p.name.text);
             locals.push((p.name.text.clone(), text.clone()));
-            params.push(Param { name: Name::new(text, p.name.at.0), ty: p.ty });
+            params.push(Param { name: Name::new(text, p.name.at.0), ty: p.ty.clone() });
         }
         let mut inner = Vec::new();
         for local in &f.body.locals {
@@ -207,12 +207,12 @@ impl<'d> Lower<'d> {
                 local.names.iter().map(|n| Name::new(self.names.inner(&n.text), n.at.0)).collect();
             locals.extend(local.names.iter().zip(&names).map(|(n, t)| (n.text.clone(), t.text.to_string())));
             let init = local.init.as_ref().map(|e| self.constant(e, None));
-            inner.push(Local { names, ty: local.ty, init, at: local.at });
+            inner.push(Local { names, ty: local.ty.clone(), init, at: local.at });
         }
         let at = At { locals, function: true, ..At::default() };
         let statements = self.stmts(&f.body.statements, &at);
         let body = Block { locals: inner, statements, at: f.body.at };
-        Function { name: Name::new(own, f.name.at.0), params, result: f.result, body, at: f.at }
+        Function { name: Name::new(own, f.name.at.0), params, result: f.result.clone(), body, at: f.at }
     }
 
     /// The items of a chart in its program.

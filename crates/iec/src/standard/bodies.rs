@@ -389,10 +389,10 @@ impl<'d> Lower<'d> {
             for name in &local.names {
                 let wish =
                     if owner.is_empty() { name.text.to_string() } else { format!("{owner}_{}", name.text) };
-                let text = self.fresh(at.program, &wish, local.ty, name.at.0);
+                let text = self.fresh(at.program, &wish, local.ty.base, name.at.0);
                 let init = match &local.init {
                     Some(e) => self.expr(e, at),
-                    None => Expr::zero(local.ty, name.at),
+                    None => Expr::zero(local.ty.base, name.at),
                 };
                 list.push(nodes::assign(nodes::name(&[&text], name.at.0), init, name.at.0));
                 inner.locals.push((name.text.clone(), text));

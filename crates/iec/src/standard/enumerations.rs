@@ -10,15 +10,15 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 use g7_model::visit::Visitor as Reader;
 use g7_model::visit_mut::{self, Use, Visitor};
 use g7_model::{
-    BinaryOp, Block, Body, ChartItem, Document, Expr, ExprKind, Item, Limits, Name, Order, Path, Problem,
-    Span, Stmt, StmtKind, Type, VarDecl, VarKind, named::numbered,
+    Arg, BinaryOp, Block, Body, ChartItem, Document, Expr, ExprKind, Function, Item, Limits, Name, Order,
+    Path, Problem, Span, Stmt, StmtKind, Type, ValueType, VarDecl, VarKind, named::numbered,
 };
 
 use super::form::Form;
 use super::identifiers::Names;
 use crate::nodes;
 use crate::report::renamed;
-use crate::variables::{Home, Variables};
+use crate::variables::{Declared, Home, Variables, of_value};
 
 /// The enumerations that stay, by their names in the document.
 #[derive(Default)]
@@ -110,6 +110,13 @@ impl Enumerations {
         Some(of.name.clone())
     }
 
+    /// Puts the new name of its enumeration into the type of a parameter, a local variable or a result.
+    fn name_type(&self, ty: &mut ValueType) {
+        if let Some(of) = self.get(ty.limits.as_deref()) {
+            ty.of = Some(Box::new(of.name.clone()));
+        }
+    }
+
     /// Puts the new name of its enumeration into a declaration, and the names of values into its initial value.
     fn declare(&self, decl: &mut VarDecl) {
         let Some(of) = self.get(decl.limits.as_deref()) else { return };
@@ -183,6 +190,8 @@ struct Looking<'a> {
     nameless: BTreeSet<Box<str>>,
     /// The names of local variables of bodies.
     locals: HashSet<Box<str>>,
+    /// The parameters, the local variables and the result of a function, while this is walked.
+    own: BTreeMap<Box<str>, Declared>,
 }
 
 impl<'a> Looking<'a> {
@@ -202,6 +211,7 @@ impl<'a> Looking<'a> {
             right: BTreeMap::new(),
             nameless: BTreeSet::new(),
             locals: HashSet::new(),
+            own: BTreeMap::new(),
         }
     }
 
@@ -226,12 +236,54 @@ impl<'a> Looking<'a> {
                         visit_mut::block(block, self);
                     }
                 }
+                Item::Function(f) => self.function(f),
                 _ => {}
             }
             if !matches!(item, Item::Function(_)) {
                 self.locals_of(item);
             }
             visit_mut::item(item, self);
+        }
+    }
+
+    /// A function, whose names hide all others.
+    fn function(&mut self, f: &mut Function) {
+        let locals = f.body.locals.iter().flat_map(|l| l.names.iter().map(|n| (n, &l.ty)));
+        let own = f.params.iter().map(|p| (&p.name, &p.ty)).chain([(&f.name, &f.result)]).chain(locals);
+        self.own = own.map(|(name, ty)| (name.text.clone(), of_value(ty))).collect();
+        for local in &mut f.body.locals {
+            if let (Some(of), Some(value)) = (of_value(&local.ty).of, &mut local.init) {
+                self.place(&of, value);
+            }
+        }
+        visit_mut::block(&mut f.body, self);
+        self.own.clear();
+        if let Some(made) = self.made {
+            f.params.iter_mut().for_each(|p| made.name_type(&mut p.ty));
+            f.body.locals.iter_mut().for_each(|l| made.name_type(&mut l.ty));
+            made.name_type(&mut f.result);
+        }
+    }
+
+    /// The arguments of a function of the file, which gives one value, too.
+    fn arguments(&mut self, called: &Path, args: &mut [Arg]) {
+        let Some(function) = self.variables.function(called) else { return };
+        if let Some(of) = &function.result.of {
+            *self.named.entry(of.clone()).or_default() += 1;
+        }
+        for (place, arg) in args.iter_mut().enumerate() {
+            if let Some(of) = function.parameter(arg, place).and_then(|p| p.of.clone()) {
+                self.place(&of, &mut arg.value);
+            }
+        }
+    }
+
+    /// The enumeration of the variable that a path names.
+    fn of_path(&self, path: &Path) -> Option<Box<str>> {
+        let own = if let [name] = path.names.as_slice() { self.own.get(&name.text) } else { None };
+        match own {
+            Some(own) => own.of.clone(),
+            None => self.variables.of_path(&self.home, path).map(Box::from),
         }
     }
 
@@ -275,7 +327,8 @@ impl<'a> Looking<'a> {
 
     /// The enumerations that can stay.
     fn staying(&self) -> BTreeSet<Box<str>> {
-        let used: BTreeSet<&str> = self.variables.enumerated().map(|(_, of)| of).collect();
+        let of_variables = self.variables.enumerated().map(|(_, of)| of);
+        let used: BTreeSet<&str> = of_variables.chain(self.variables.of_functions()).collect();
         let local = self.variables.enumerated().filter(|(n, _)| self.locals.contains(*n));
         let hidden: BTreeSet<&str> = local.map(|(_, of)| of).collect();
         let stays = |name: &str| {
@@ -292,9 +345,10 @@ impl<'a> Looking<'a> {
         let path = match &e.kind {
             ExprKind::Path(path) => path,
             ExprKind::Element(path, _, None) => path,
+            ExprKind::Call(path, _) => return self.variables.function(path)?.result.of.clone(),
             _ => return None,
         };
-        self.variables.of_path(&self.home, path).map(Box::from)
+        self.of_path(path)
     }
 
     /// A place where a value or a variable of an enumeration can stand.
@@ -316,16 +370,21 @@ impl<'a> Looking<'a> {
 
 impl Visitor for Looking<'_> {
     fn path(&mut self, path: &mut Path, _: Use, _: Span) {
-        if let Some(of) = self.variables.of_path(&self.home, path) {
-            *self.named.entry(of.into()).or_default() += 1;
+        if let Some(of) = self.of_path(path) {
+            *self.named.entry(of).or_default() += 1;
         }
     }
 
     fn expr(&mut self, e: &mut Expr) {
-        let ExprKind::Binary(BinaryOp::Eq | BinaryOp::Ne, a, b) = &mut e.kind else { return };
-        if let Some(of) = self.of(a).or_else(|| self.of(b)) {
-            self.place(&of, a);
-            self.place(&of, b);
+        match &mut e.kind {
+            ExprKind::Binary(BinaryOp::Eq | BinaryOp::Ne, a, b) => {
+                if let Some(of) = self.of(a).or_else(|| self.of(b)) {
+                    self.place(&of, a);
+                    self.place(&of, b);
+                }
+            }
+            ExprKind::Call(path, args) => self.arguments(path, args),
+            _ => {}
         }
     }
 

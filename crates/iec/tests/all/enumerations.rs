@@ -156,3 +156,61 @@ fn matiec_takes_enumerations() {
     let text = text_of(&with(CHART));
     assert_eq!(crate::sfc::written::compile(&matiec, &text), Ok(()), "{text}");
 }
+
+const NEXT: &str = "function Next(m : Mode, way : BOOL) : Mode {
+  var other : Mode := Manual
+  CASE m OF
+    Mode.Off: Next := other
+    Manual: Next := Automatic
+  END_CASE
+}
+";
+
+const CALLS: &str = "chart G {
+  initial step 1 {
+    each scan: {
+      mode := Next(mode, up)
+      IF Next(m := Automatic, way := up) = Manual THEN i := 2 END_IF
+      chosen := Next(Next(Mode.Off, up), up)
+    }
+  }
+  1 -> 1 when Next(chosen, up) <> mode
+}
+";
+
+/// A function takes and gives the type.
+#[test]
+fn functions_take_and_give_enumerations() {
+    let text = text_of(&with(&format!("{NEXT}{CALLS}")));
+    for line in [
+        "FUNCTION Next : Mode_2",
+        "m : Mode_2;",
+        "other : Mode_2 := Manual;",
+        "Next := other;",
+        "Next := Automatic;",
+        "mode := Next(mode, up);",
+        "IF Next(m := Automatic, way := up) = Manual THEN",
+        "chosen := Next(Next(Off, up), up);",
+        "Next(chosen, up) <> mode",
+    ] {
+        assert!(text.contains(line), "{line} in {text}");
+    }
+    let xml = project(&with(&format!("{NEXT}{CALLS}")), Dialect::Standard);
+    assert!(has(&xml, "<returnType>\n<derived name=\"Mode_2\"/>"), "{xml}");
+    if let Some(matiec) = g7_peers::matiec() {
+        assert_eq!(crate::sfc::written::compile(&matiec, &text), Ok(()), "{text}");
+    }
+}
+
+/// Where another use makes numbers of the enumeration, a function takes and gives these.
+#[test]
+fn functions_take_and_give_numbers_of_others() {
+    let text = text_of(&with(&format!(
+        "{NEXT}output n : INT\nchart G {{ initial step 1 {{ each scan: n := Mode_TO_INT(Next(mode, up)) }} 1 -> 1 when up }}\n"
+    )));
+    for line in
+        ["FUNCTION Next : INT", "other : INT := 1;", "Next := 2;", "n := Next(mode, up);", "mode : INT := 2;"]
+    {
+        assert!(text.contains(line), "{line} in {text}");
+    }
+}

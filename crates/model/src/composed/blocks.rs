@@ -135,7 +135,9 @@ impl<'d> Known<'d> {
         let mut names = Names { own: own_names(of), known: self, fits: true };
         let mut body = body.block().clone();
         visit_mut::block(&mut body, &mut names);
-        names.fits && parameters.into_iter().all(plain) && all.all(|m| m.range().is_none())
+        let unbounded =
+            all.all(|m| m.range().is_none()) && body.locals.iter().all(|l| l.ty.range().is_none());
+        names.fits && parameters.into_iter().all(plain) && unbounded
     }
 }
 

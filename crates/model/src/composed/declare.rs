@@ -463,12 +463,12 @@ fn leaf(member: &VarDecl, part: Part<'_>) -> VarDecl {
 
 /// The local variables of a declaration in a body as members.
 pub(super) fn local_member(local: &Local) -> VarDecl {
-    VarDecl::new(VarKind::Var, local.names.clone(), local.ty, local.at)
+    VarDecl::of_type(VarKind::Var, local.names.clone(), &local.ty, local.at)
 }
 
 /// The assignments of their initial values to the local variables of a declaration.
 pub(super) fn local_values(local: &Local) -> Vec<Stmt> {
-    let value = local.init.clone().unwrap_or_else(|| Expr::zero(local.ty, local.at));
+    let value = local.init.clone().unwrap_or_else(|| Expr::zero(local.ty.base, local.at));
     let assigned = |name: &Name| {
         let target = Expr { kind: ExprKind::Path(Path { names: vec![name.clone()] }), at: name.at };
         Stmt { kind: StmtKind::Assign { target, value: value.clone() }, at: local.at }

@@ -32,7 +32,7 @@ pub(super) fn out_of_loops(of: &Composed, block: &mut Block) {
     let free = |n: &String| !names.0.iter().any(|given| *given.text == **n);
     let Some(flag) = std::iter::once("returned".to_owned()).chain(numbered).find(free) else { return };
     let flag = Name { text: flag.into(), at };
-    block.locals.push(Local { names: vec![flag.clone()], ty: Type::Bool, init: None, at });
+    block.locals.push(Local { names: vec![flag.clone()], ty: Type::Bool.into(), init: None, at });
     outside(&mut block.statements, &flag);
 }
 

@@ -84,8 +84,14 @@ impl Checks {
             statements: vec![Stmt { kind: StmtKind::Assign { target, value }, at }],
             at,
         };
-        let params = vec![Param { name: Name { text: "x".into(), at }, ty }];
-        self.functions.push(Item::Function(Function { name: name.clone(), params, result: ty, body, at }));
+        let params = vec![Param { name: Name { text: "x".into(), at }, ty: ty.into() }];
+        self.functions.push(Item::Function(Function {
+            name: name.clone(),
+            params,
+            result: ty.into(),
+            body,
+            at,
+        }));
         self.made.insert((ty, low, high), name.clone());
         name
     }

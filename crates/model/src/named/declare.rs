@@ -3,10 +3,11 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
+use super::values;
 use crate::composed::{DEEP, defined_twice, of_language, unknown_type};
 use crate::{
-    Array, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span,
-    Type, VarDecl, VarKind, codes, say,
+    Array, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span, Type,
+    VarDecl, VarKind, codes, say, visit_mut,
 };
 
 /// Most values of an enumeration.
@@ -15,6 +16,16 @@ pub const MOST: usize = 1 << 12;
 /// Puts each declared type in the place of its name, in all declarations of variables. Also returns the problems of the
 /// declared types.
 pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
+    if !is_concerned(document) {
+        return (Cow::Borrowed(document), Vec::new());
+    }
+    let mut types = Types::of(document);
+    let items = document.items.iter().filter_map(|item| types.item(item)).collect();
+    (Cow::Owned(Document { items, notes: document.notes.clone() }), types.problems)
+}
+
+/// True for a document that declares types, or in which something has bounds or names a type.
+fn is_concerned(document: &Document) -> bool {
     let limited = |v: &VarDecl| v.limits.is_some();
     let concerned = |i: &Item| match i {
         Item::Type(_) => true,
@@ -23,23 +34,20 @@ pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
         Item::Composed(c) => c.members.iter().chain(&c.inouts).any(limited),
         _ => false,
     };
-    if !document.items.iter().any(concerned) {
-        return (Cow::Borrowed(document), Vec::new());
-    }
-    let mut types = Types::of(document);
-    let items = document.items.iter().filter_map(|item| types.item(item)).collect();
-    (Cow::Owned(Document { items, notes: document.notes.clone() }), types.problems)
+    document.items.iter().any(concerned) || values::any(document)
 }
 
 /// The declared types of a file.
-struct Types<'d> {
+pub(super) struct Types<'d> {
     /// Each type, already without the names of other declared types.
     known: HashMap<&'d str, VarDecl>,
     /// The constants of the file that are written numbers.
     constants: HashMap<&'d str, i128>,
+    /// The values of enumerations that have the number 0, each behind its enumeration.
+    zeros: HashSet<(&'d str, &'d str)>,
     /// The structures and function blocks.
     composed: HashSet<&'d str>,
-    problems: Vec<Problem>,
+    pub(super) problems: Vec<Problem>,
 }
 
 impl<'d> Types<'d> {
@@ -47,6 +55,7 @@ impl<'d> Types<'d> {
         let mut types = Types {
             known: HashMap::new(),
             constants: HashMap::new(),
+            zeros: HashSet::new(),
             composed: HashSet::new(),
             problems: Vec::new(),
         };
@@ -129,6 +138,8 @@ impl<'d> Types<'d> {
         let values = t.values();
         if !values.is_empty() {
             self.enumeration(values);
+            let zeros = numbered(values).into_iter().filter(|(_, number)| *number == Some(0));
+            self.zeros.extend(zeros.map(|(value, _)| (&*name.text, &*value.text)));
             let usual = values.first().map(|(first, _)| value_of(name, first));
             own.init = t.init.clone().map(|e| qualified(e, name, values)).or(usual);
             own.limits = Some(Box::new(Limits::Of(name.clone())));
@@ -139,8 +150,8 @@ impl<'d> Types<'d> {
         self.known.insert(&name.text, own);
     }
 
-    /// Reports a `type` whose own type does not exist, as in `type A : Missing`.
-    fn known_name(&mut self, t: &mut VarDecl) {
+    /// Reports a type that does not exist, as in `type A : Missing`.
+    pub(super) fn known_name(&mut self, t: &mut VarDecl) {
         let Some(of) = t.of.take_if(|of| !self.composed.contains(&*of.text)) else { return };
         if of.text.is_empty() {
             return; // The name could not be read; the parser has reported it.
@@ -149,6 +160,17 @@ impl<'d> Types<'d> {
         names.extend(self.composed.iter().chain(self.known.keys()).copied());
         names.sort_unstable();
         self.problems.push(unknown_type(&of, &names));
+    }
+
+    /// True for the number 0 and for a value with this number.
+    pub(super) fn is_zero(&self, e: &Expr) -> bool {
+        match &e.kind {
+            ExprKind::Path(path) => match path.names.as_slice() {
+                [ty, value] => self.zeros.contains(&(&*ty.text, &*value.text)),
+                _ => false,
+            },
+            kind => kind.whole() == Some(0),
+        }
     }
 
     /// Checks the names and numbers of an enumeration.
@@ -179,43 +201,43 @@ impl<'d> Types<'d> {
     /// The item without names of declared types. Of the types themselves, only enumerations stay in the document: their
     /// values are looked up later.
     fn item(&mut self, item: &Item) -> Option<Item> {
-        let none = HashMap::new();
-        Some(match item {
+        let mut own = item.clone();
+        let mut inner = HashMap::new();
+        match &mut own {
             Item::Type(t) => {
                 let name = &t.names.first()?.text;
                 let kept = !t.values().is_empty() && self.known.contains_key(&**name);
-                return kept.then(|| item.clone());
+                return kept.then_some(own);
             }
-            Item::Var(v) => {
-                let mut own = v.clone();
-                self.apply(&mut own, &none);
-                Item::Var(own)
-            }
+            Item::Var(v) => self.apply(v, &inner),
             Item::Chart(c) => {
-                let inner: HashMap<&str, i128> = c.vars().flat_map(constants).collect();
-                let items = c.items.iter().cloned().map(|item| match item {
-                    ChartItem::Var(mut v) => {
-                        self.apply(&mut v, &inner);
-                        ChartItem::Var(v)
+                self.params(&mut c.params);
+                if let Item::Chart(c) = item {
+                    inner.extend(c.vars().flat_map(constants));
+                }
+                for item in &mut c.items {
+                    if let ChartItem::Var(v) = item {
+                        self.apply(v, &inner);
                     }
-                    other => other,
-                });
-                Item::Chart(Chart { items: items.collect(), ..c.clone() })
+                }
             }
             Item::Composed(c) => {
-                let mut own = c.clone();
-                let inner: HashMap<&str, i128> = c.members.iter().flat_map(constants).collect();
-                own.members.iter_mut().chain(&mut own.inouts).for_each(|m| self.apply(m, &inner));
-                own.inouts.iter_mut().for_each(|m| m.init = None);
-                Item::Composed(own)
+                if let Item::Composed(c) = item {
+                    inner.extend(c.members.iter().flat_map(constants));
+                }
+                c.members.iter_mut().chain(&mut c.inouts).for_each(|m| self.apply(m, &inner));
+                c.inouts.iter_mut().for_each(|m| m.init = None);
             }
-            other => other.clone(),
-        })
+            Item::Function(f) => self.function(f),
+            _ => {}
+        }
+        visit_mut::blocks(&mut own, &mut |block| self.locals(block, &inner));
+        Some(own)
     }
 
     /// Replaces the name of a declared type in a declaration, or checks the bounds that are written there. `inner` are the
     /// constants of the chart or function block round it.
-    fn apply(&mut self, v: &mut VarDecl, inner: &HashMap<&str, i128>) {
+    pub(super) fn apply(&mut self, v: &mut VarDecl, inner: &HashMap<&str, i128>) {
         if let Some(ty) = v.of.as_ref().and_then(|of| self.known.get(&*of.text)) {
             let many = v.array.is_some();
             v.ty = ty.ty;

@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use super::checks::Checks;
 use super::scopes::{Admits, Around, Found, Scopes, Var};
+use super::values;
 use crate::{
     Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Problem, Said,
     Span, StandardFunction, Type, VarDecl, VarKind, codes, say,
@@ -29,6 +30,8 @@ pub struct Checker<'d> {
     pub(super) scopes: Scopes<'d>,
     pub(super) checks: Checks,
     pub(super) problems: Vec<Problem>,
+    /// True for a question, which changes nothing: an argument outside of the bounds of a parameter is no fault there.
+    asked: bool,
 }
 
 impl<'d> Checker<'d> {
@@ -40,10 +43,12 @@ impl<'d> Checker<'d> {
             Item::Chart(c) => c.vars().any(|v| v.limits.is_some()),
             _ => false,
         };
-        document.items.iter().any(concerned).then(|| Checker {
+        let concerned = document.items.iter().any(concerned) || values::any(document);
+        concerned.then(|| Checker {
             scopes: Scopes::of(document),
             checks: Checks::default(),
             problems: Vec::new(),
+            asked: false,
         })
     }
 
@@ -51,6 +56,7 @@ impl<'d> Checker<'d> {
     pub fn query(&mut self, e: &Expr) -> (Expr, Vec<Problem>) {
         let mut e = e.clone();
         self.problems.clear();
+        self.asked = true;
         self.typed(&mut e, Around { chart: None, locals: &[] });
         (e, std::mem::take(&mut self.problems))
     }
@@ -67,7 +73,9 @@ impl<'d> Checker<'d> {
             }
             items.push(own);
         }
-        items.extend(self.checks.into_items());
+        // A compiler that reads from the top down knows the checks where functions call them.
+        let first = items.iter().position(|i| matches!(i, Item::Function(_))).unwrap_or(items.len());
+        items.splice(first..first, self.checks.into_items());
         (Document { items, notes: document.notes.clone() }, self.problems)
     }
 
@@ -117,7 +125,7 @@ impl<'d> Checker<'d> {
         e: &mut Expr,
         wanted: Option<&str>,
         range: Option<(i128, i128)>,
-        around: Around<'_>,
+        around: Around<'_, 'd>,
     ) {
         self.expect(e, wanted, around);
         let Some((low, high)) = range.filter(|_| e.kind != ExprKind::Bad) else { return };
@@ -134,7 +142,7 @@ impl<'d> Checker<'d> {
     }
 
     /// The number of a constant.
-    fn number(&self, e: &Expr, around: Around<'_>) -> Option<i128> {
+    fn number(&self, e: &Expr, around: Around<'_, 'd>) -> Option<i128> {
         match &e.kind {
             ExprKind::Path(path) => match self.scopes.find(path, around) {
                 Found::Var(var, false) => var.number,
@@ -152,12 +160,12 @@ impl<'d> Checker<'d> {
     }
 
     /// Changes an expression whose value must not be one of an enumeration.
-    pub(super) fn plain(&mut self, e: &mut Expr, around: Around<'_>) {
+    pub(super) fn plain(&mut self, e: &mut Expr, around: Around<'_, 'd>) {
         self.expect(e, None, around);
     }
 
     /// Changes an expression whose value must be one of the enumeration `wanted`; if that is None, of no enumeration.
-    pub(super) fn expect(&mut self, e: &mut Expr, wanted: Option<&str>, around: Around<'_>) {
+    pub(super) fn expect(&mut self, e: &mut Expr, wanted: Option<&str>, around: Around<'_, 'd>) {
         let found = self.typed(e, around);
         self.agree(found, wanted, e);
     }
@@ -195,7 +203,7 @@ impl<'d> Checker<'d> {
     }
 
     /// Changes an expression, and returns the enumeration that its value is of.
-    pub(super) fn typed(&mut self, e: &mut Expr, around: Around<'_>) -> Option<&'d str> {
+    pub(super) fn typed(&mut self, e: &mut Expr, around: Around<'_, 'd>) -> Option<&'d str> {
         let at = e.at;
         match &mut e.kind {
             ExprKind::Literal(_) | ExprKind::Bad => None,
@@ -288,7 +296,7 @@ impl<'d> Checker<'d> {
     fn same<'e>(
         &mut self,
         mut list: impl Iterator<Item = &'e mut Expr>,
-        around: Around<'_>,
+        around: Around<'_, 'd>,
     ) -> Option<&'d str> {
         let first = list.next()?;
         let found = self.typed(first, around);
@@ -308,7 +316,7 @@ impl<'d> Checker<'d> {
     }
 
     /// `Mode_TO_INT(mode)`: the number of a value.
-    fn number_of(&mut self, path: &Path, args: &mut [Arg], around: Around<'_>) -> Option<Expr> {
+    fn number_of(&mut self, path: &Path, args: &mut [Arg], around: Around<'_, 'd>) -> Option<Expr> {
         let [name] = path.names.as_slice() else { return None };
         let ty = name.text.strip_suffix("_TO_INT")?;
         let (ty, _) = self.scopes.enumerations.get_key_value(ty)?;
@@ -317,7 +325,14 @@ impl<'d> Checker<'d> {
         Some(only.value.clone())
     }
 
-    fn call(&mut self, path: &Path, args: &mut [Arg], around: Around<'_>) -> Option<&'d str> {
+    fn call(&mut self, path: &Path, args: &mut [Arg], around: Around<'_, 'd>) -> Option<&'d str> {
+        if let Some(signature) = self.scopes.function(path).cloned() {
+            for (place, arg) in args.iter_mut().enumerate() {
+                let admits = signature.of(arg, place);
+                self.given(&mut arg.value, admits, around);
+            }
+            return if let Admits::Values(ty) = signature.result { Some(ty) } else { None };
+        }
         let function = match path.names.as_slice() {
             [name] => StandardFunction::named(&name.text),
             _ => None,
@@ -346,20 +361,32 @@ impl<'d> Checker<'d> {
     }
 
     /// Changes the value of an assignment, so that the target gets only values that it can have.
-    pub(super) fn assigned(&mut self, target: &mut Expr, value: &mut Expr, around: Around<'_>) {
+    pub(super) fn assigned(&mut self, target: &mut Expr, value: &mut Expr, around: Around<'_, 'd>) {
         let (var, part) = self.target(target, around);
         let admits = var.map_or(Admits::All, |v| v.admits);
         match admits {
-            Admits::All => self.plain(value, around),
             Admits::Values(_) | Admits::Range(..) if part => {
                 self.plain(value, around);
                 self.only_assigned(target);
             }
+            Admits::Range(low, high, ty)
+                if var.is_some_and(|v| v.array) && matches!(target.kind, ExprKind::Path(_)) =>
+            {
+                self.plain(value, around);
+                self.bounded(value, (low, high, ty), true, around);
+            }
+            admits => self.given(value, admits, around),
+        }
+    }
+
+    /// Changes the value that a variable or a parameter gets, so that it is one of those that this can have.
+    pub(super) fn given(&mut self, value: &mut Expr, admits: Admits<'d>, around: Around<'_, 'd>) {
+        match admits {
+            Admits::All => self.plain(value, around),
             Admits::Values(ty) => self.expect(value, Some(ty), around),
             Admits::Range(low, high, ty) => {
                 self.plain(value, around);
-                let whole = var.is_some_and(|v| v.array) && matches!(target.kind, ExprKind::Path(_));
-                self.bounded(value, (low, high, ty), whole, around);
+                self.bounded(value, (low, high, ty), false, around);
             }
         }
     }
@@ -369,21 +396,26 @@ impl<'d> Checker<'d> {
         value: &mut Expr,
         (low, high, ty): (i128, i128, Type),
         whole: bool,
-        around: Around<'_>,
+        around: Around<'_, 'd>,
     ) {
         if let Some(n) = self.number(value, around) {
             return self.within(n, (low, high), value.at.0);
         }
-        if self.is_limited(value, (low, high), around) {
+        if self.asked || self.is_limited(value, (low, high), around) {
             return;
         }
         let source = match &value.kind {
-            ExprKind::Path(path) | ExprKind::Call(path, _) if whole => self.scopes.find(path, around),
+            ExprKind::Call(path, _) if whole => self.scopes.find(path, around),
             ExprKind::Path(path) => self.scopes.find(path, around),
             ExprKind::Element(path, _, None) => self.scopes.find(path, around),
             _ => Found::Other,
         };
-        if let Found::Var(Var { admits: Admits::Range(least, most, _), .. }, false) = source
+        let result = match &value.kind {
+            ExprKind::Call(path, _) => self.scopes.function(path).map(|f| f.result),
+            _ => None,
+        };
+        let admits = if let Found::Var(var, false) = source { Some(var.admits) } else { result };
+        if let Some(Admits::Range(least, most, _)) = admits
             && low <= least
             && most <= high
         {
@@ -400,7 +432,7 @@ impl<'d> Checker<'d> {
     }
 
     /// True for `LIMIT(0, x, 100)` with bounds that are known and fit.
-    fn is_limited(&self, value: &Expr, (low, high): (i128, i128), around: Around<'_>) -> bool {
+    fn is_limited(&self, value: &Expr, (low, high): (i128, i128), around: Around<'_, 'd>) -> bool {
         let ExprKind::Call(path, args) = &value.kind else { return false };
         let ([name], [least, _, most]) = (path.names.as_slice(), args.as_slice()) else { return false };
         if StandardFunction::named(&name.text) != Some(StandardFunction::Limit)
@@ -413,7 +445,7 @@ impl<'d> Checker<'d> {
     }
 
     /// The variable that a target names; the flag is true if the target is only a bit or a member of it.
-    fn target(&mut self, target: &mut Expr, around: Around<'_>) -> (Option<Var<'d>>, bool) {
+    fn target(&mut self, target: &mut Expr, around: Around<'_, 'd>) -> (Option<Var<'d>>, bool) {
         let (path, bit) = match &mut target.kind {
             ExprKind::Path(path) => (&*path, false),
             ExprKind::Element(path, index, bit) => {
@@ -432,7 +464,7 @@ impl<'d> Checker<'d> {
     }
 
     /// Reports a target that must be written by assignments only, where something else writes it.
-    pub(super) fn written(&mut self, target: &mut Expr, around: Around<'_>) {
+    pub(super) fn written(&mut self, target: &mut Expr, around: Around<'_, 'd>) {
         if let (Some(Var { admits: Admits::Values(_) | Admits::Range(..), .. }), _) =
             self.target(target, around)
         {

@@ -3,7 +3,9 @@
 use std::collections::HashMap;
 
 use super::declare::numbered;
-use crate::{ChartItem, Document, Item, Limits, Name, Path, Type, VarDecl, VarKind, normal_address};
+use crate::{
+    Arg, ChartItem, Document, Item, Limits, Name, Path, Type, ValueType, VarDecl, VarKind, normal_address,
+};
 
 /// The values that a variable can have.
 #[derive(Clone, Copy, Debug)]
@@ -43,10 +45,43 @@ pub(super) enum Found<'d> {
 
 /// Where an expression stands.
 #[derive(Clone, Copy)]
-pub(super) struct Around<'e> {
+pub(super) struct Around<'e, 'd> {
     pub(super) chart: Option<&'e str>,
-    /// The local variables. They hide other names, and they are plain: none is of a declared type.
-    pub(super) locals: &'e [Box<str>],
+    /// The local variables, the innermost last. They hide other names.
+    pub(super) locals: &'e [Local<'d>],
+}
+
+/// A local variable, a parameter, or the result of a function.
+#[derive(Clone, Debug)]
+pub(super) struct Local<'d> {
+    name: Box<str>,
+    var: Var<'d>,
+}
+
+impl<'d> Local<'d> {
+    /// The values that it can have.
+    pub(super) fn admits(&self) -> Admits<'d> {
+        self.var.admits
+    }
+}
+
+/// The parameters and the result of a function, by the values that they can have.
+#[derive(Clone, Debug)]
+pub(super) struct Signature<'d> {
+    /// Each parameter, and the values that it can have.
+    params: Vec<(&'d str, Admits<'d>)>,
+    pub(super) result: Admits<'d>,
+}
+
+impl<'d> Signature<'d> {
+    /// The values that an argument can have: the one with this name, or at this place.
+    pub(super) fn of(&self, arg: &Arg, place: usize) -> Admits<'d> {
+        let found = match &arg.name {
+            Some(name) => self.params.iter().find(|(param, _)| **param == *name.text),
+            None => self.params.get(place),
+        };
+        found.map_or(Admits::All, |(_, admits)| *admits)
+    }
 }
 
 type Vars<'d> = HashMap<&'d str, Var<'d>>;
@@ -60,6 +95,7 @@ pub(super) struct Scopes<'d> {
     /// The variables with limits that have a direct address, by that.
     addresses: HashMap<String, Var<'d>>,
     pub(super) enumerations: HashMap<&'d str, Vec<(&'d Name, i128)>>,
+    functions: HashMap<&'d str, Signature<'d>>,
     /// Each value, with the enumerations that have it.
     values: HashMap<&'d str, Vec<(&'d str, i128)>>,
 }
@@ -72,6 +108,7 @@ impl<'d> Scopes<'d> {
             blocks: HashMap::new(),
             addresses: HashMap::new(),
             enumerations: HashMap::new(),
+            functions: HashMap::new(),
             values: HashMap::new(),
         };
         for item in &document.items {
@@ -94,10 +131,37 @@ impl<'d> Scopes<'d> {
                     }
                     c.vars().for_each(|v| made.place(v));
                 }
+                Item::Function(f) => {
+                    let params = f.params.iter().map(|p| (&*p.name.text, admits_of(&p.ty))).collect();
+                    let signature = Signature { params, result: admits_of(&f.result) };
+                    made.functions.entry(&*f.name.text).or_insert(signature);
+                }
                 _ => {}
             }
         }
         made
+    }
+
+    /// The function that a path calls.
+    pub(super) fn function(&self, path: &Path) -> Option<&Signature<'d>> {
+        match path.names.as_slice() {
+            [name] => self.functions.get(&*name.text),
+            _ => None,
+        }
+    }
+
+    /// A local variable, a parameter or a result with this name and type.
+    pub(super) fn local(&self, name: &Name, ty: &ValueType) -> Local<'d> {
+        let admits = match within(ty.limits.as_deref(), ty.base) {
+            Admits::All => Admits::All,
+            Admits::Range(least, most, ty) => Admits::Range(least, most, ty),
+            // The key lives as long as the document; the name in the type may be that of a copy.
+            Admits::Values(of) => match self.enumerations.get_key_value(of) {
+                Some((of, _)) => Admits::Values(of),
+                None => Admits::All,
+            },
+        };
+        Local { name: name.text.clone(), var: Var { admits, array: false, of: None, number: None } }
     }
 
     fn place(&mut self, v: &'d VarDecl) {
@@ -129,11 +193,11 @@ impl<'d> Scopes<'d> {
     }
 
     /// The meaning of a path.
-    pub(super) fn find(&self, path: &Path, around: Around<'_>) -> Found<'d> {
+    pub(super) fn find(&self, path: &Path, around: Around<'_, 'd>) -> Found<'d> {
         let names = path.names.as_slice();
         let Some(first) = names.first().map(|n| &*n.text) else { return Found::Other };
-        if around.locals.iter().any(|l| **l == *first) {
-            return Found::Other;
+        if let Some(local) = around.locals.iter().rev().find(|l| *l.name == *first) {
+            return Found::Var(local.var, names.len() > 1);
         }
         let own = around.chart.and_then(|c| self.charts.get(c)?.get(first)).or_else(|| self.file.get(first));
         if let Some(var) = own {
@@ -174,7 +238,7 @@ impl<'d> Scopes<'d> {
     }
 
     /// The enumeration of a parameter of the function block that a path calls.
-    pub(super) fn parameter(&self, instance: &Path, name: &Name, around: Around<'_>) -> Option<&'d str> {
+    pub(super) fn parameter(&self, instance: &Path, name: &Name, around: Around<'_, 'd>) -> Option<&'d str> {
         let path = Path { names: instance.names.iter().chain([name]).cloned().collect() };
         match self.find(&path, around) {
             Found::Var(Var { admits: Admits::Values(ty), .. }, false) => Some(ty),
@@ -199,9 +263,18 @@ fn declare<'d>(vars: &mut Vars<'d>, v: &'d VarDecl) {
 
 /// The values that the variables of a declaration can have.
 pub(super) fn admits(v: &VarDecl) -> Admits<'_> {
-    match (v.limits.as_deref(), v.range()) {
+    within(v.limits.as_deref(), v.ty)
+}
+
+/// The same for a parameter or a result.
+fn admits_of(ty: &ValueType) -> Admits<'_> {
+    within(ty.limits.as_deref(), ty.base)
+}
+
+fn within(limits: Option<&Limits>, ty: Type) -> Admits<'_> {
+    match (limits, limits.and_then(Limits::range)) {
         (Some(Limits::Of(name)), _) => Admits::Values(&name.text),
-        (_, Some((least, most))) => Admits::Range(least, most, v.ty),
+        (_, Some((least, most))) => Admits::Range(least, most, ty),
         _ => Admits::All,
     }
 }

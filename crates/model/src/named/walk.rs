@@ -1,13 +1,13 @@
 //! The walk through items and statements, in which values are replaced and assignments checked.
 
 use super::held::Checker;
-use super::scopes::Around;
+use super::scopes::{Admits, Around, Local};
 use crate::{
     Action, ActionKind, Block, Body, CaseArm, ChartItem, Expr, ExprKind, Item, Name, Path, Stmt, StmtKind,
     Target, Work,
 };
 
-impl Checker<'_> {
+impl<'d> Checker<'d> {
     /// An item that is neither a variable nor a chart.
     pub(super) fn item(&mut self, item: &mut Item) {
         match item {
@@ -15,8 +15,9 @@ impl Checker<'_> {
             Item::Section(s) => self.block(&mut s.body, None, &[]),
             Item::Pre(body, _) | Item::Post(body, _) => self.body(body, None),
             Item::Function(f) => {
-                let own: Vec<Box<str>> =
-                    f.params.iter().map(|p| &p.name).chain([&f.name]).map(|n| n.text.clone()).collect();
+                let params = f.params.iter().map(|p| (&p.name, &p.ty));
+                let own = params.chain([(&f.name, &f.result)]);
+                let own: Vec<Local<'d>> = own.map(|(name, ty)| self.scopes.local(name, ty)).collect();
                 self.block(&mut f.body, None, &own);
             }
             Item::Prove(p) => {
@@ -43,7 +44,7 @@ impl Checker<'_> {
         }
     }
 
-    fn action(&mut self, action: &mut Action, around: Around<'_>) {
+    fn action(&mut self, action: &mut Action, around: Around<'_, 'd>) {
         match &mut action.kind {
             ActionKind::Qualified { time, target, condition, .. } => {
                 time.iter_mut().chain(condition).for_each(|e| self.plain(e, around));
@@ -70,7 +71,7 @@ impl Checker<'_> {
         }
     }
 
-    fn work(&mut self, work: &mut Work, around: Around<'_>) {
+    fn work(&mut self, work: &mut Work, around: Around<'_, 'd>) {
         match work {
             Work::Block(block) => self.block(block, around.chart, &[]),
             Work::Single(s) => self.statement(s, around),
@@ -91,19 +92,24 @@ impl Checker<'_> {
         }
     }
 
-    fn block(&mut self, block: &mut Block, chart: Option<&str>, hidden: &[Box<str>]) {
-        let own = block.locals.iter().flat_map(|l| &l.names).map(|n| n.text.clone());
-        let locals: Vec<Box<str>> = hidden.iter().cloned().chain(own).collect();
+    fn block(&mut self, block: &mut Block, chart: Option<&str>, hidden: &[Local<'d>]) {
+        let own = block.locals.iter().flat_map(|l| l.names.iter().map(|n| self.scopes.local(n, &l.ty)));
+        let locals: Vec<Local<'d>> = hidden.iter().cloned().chain(own).collect();
+        for local in &mut block.locals {
+            let Some(value) = &mut local.init else { continue };
+            let admits = local.names.first().map(|n| self.scopes.local(n, &local.ty).admits());
+            // The value cannot name the variables of its own block.
+            self.given(value, admits.unwrap_or(Admits::All), Around { chart, locals: hidden });
+        }
         let around = Around { chart, locals: &locals };
-        block.locals.iter_mut().filter_map(|l| l.init.as_mut()).for_each(|e| self.plain(e, around));
         self.statements(&mut block.statements, around);
     }
 
-    fn statements(&mut self, list: &mut [Stmt], around: Around<'_>) {
+    fn statements(&mut self, list: &mut [Stmt], around: Around<'_, 'd>) {
         list.iter_mut().for_each(|s| self.statement(s, around));
     }
 
-    fn statement(&mut self, s: &mut Stmt, around: Around<'_>) {
+    fn statement(&mut self, s: &mut Stmt, around: Around<'_, 'd>) {
         match &mut s.kind {
             StmtKind::Assign { target, value } => self.assigned(target, value, around),
             StmtKind::Call(path, args) => {
@@ -140,7 +146,7 @@ impl Checker<'_> {
         }
     }
 
-    fn case(&mut self, selector: &mut Expr, arms: &mut [CaseArm], around: Around<'_>) {
+    fn case(&mut self, selector: &mut Expr, arms: &mut [CaseArm], around: Around<'_, 'd>) {
         let ty = self.typed(selector, around);
         for arm in arms {
             for (least, most) in &mut arm.labels {
@@ -151,7 +157,7 @@ impl Checker<'_> {
         }
     }
 
-    fn loop_variable(&mut self, var: &Name, around: Around<'_>) {
+    fn loop_variable(&mut self, var: &Name, around: Around<'_, 'd>) {
         let path = Path { names: vec![var.clone()] };
         self.written(&mut Expr { kind: ExprKind::Path(path), at: var.at }, around);
     }

@@ -295,7 +295,7 @@ impl Parser<'_> {
         let start = self.bump().start;
         let name = self.name(say!("the name of the function"));
         let params = self.params();
-        let result = self.typed();
+        let result = self.value_type();
         let body = self.block(say!("`{{` and the statements"));
         Function { name, params, result, body, at: self.since(start).into() }
     }

@@ -41,7 +41,7 @@ impl Parser<'_> {
     fn local(&mut self) -> Local {
         let start = self.bump().start;
         let names = self.names(say!("the name of a variable"));
-        let ty = self.typed();
+        let ty = self.value_type();
         let init = self.initial_value();
         Local { names, ty, init, at: self.since(start).into() }
     }

@@ -5,7 +5,9 @@ use super::{Parser, meant};
 use crate::lexer::{Tok, Token};
 use crate::words::{self, St};
 use g7_iec::constant;
-use g7_model::{Array, Expr, ExprKind, Name, Param, Problem, Said, Type, VarDecl, VarKind, codes, say};
+use g7_model::{
+    Array, Expr, ExprKind, Name, Param, Problem, Said, Type, ValueType, VarDecl, VarKind, codes, say,
+};
 
 impl Parser<'_> {
     /// The kind of variable that is declared here, if one is.
@@ -147,6 +149,16 @@ impl Parser<'_> {
         }
         self.expected_help(say!("`:` and a type"), Some(say!("for example `a : BOOL`")));
         Type::Bool
+    }
+
+    /// `: type` of one value: a type of the language, with bounds perhaps, or one that the file declares.
+    pub(super) fn value_type(&mut self) -> ValueType {
+        let of = self.named_type(false);
+        if of.is_some() {
+            return ValueType { of, ..Type::Bool.into() };
+        }
+        let base = self.typed();
+        ValueType { base, of, limits: self.subrange(base).map(Box::new) }
     }
 
     /// `: ARRAY[1..6, 0..3] OF`, if it stands here.
@@ -294,9 +306,9 @@ impl Parser<'_> {
                 ("ARRAY", _) => say!("an array is declared in a chart or in the file"),
                 ("STRUCT", _) => say!("a structure has a name: `struct Motor {{ speed : REAL }}`"),
                 (_, Some(near)) => say!("did you mean `{near}`?"),
-                // A variable or a member can be of a type of the file, so this is neither.
+                // All others can be of a type of the file.
                 _ => say!(
-                    "parameters, local variables and states of a plant have a type of the language: {}",
+                    "constants and states of a plant have a type of the language: {}",
                     Said::foreign(names.join(", "))
                 ),
             })
@@ -320,7 +332,7 @@ impl Parser<'_> {
         while !matches!(self.cur.kind, Tok::RParen | Tok::End) {
             let start = self.cur.start;
             let name = self.name(say!("the name of a parameter"));
-            let ty = self.typed();
+            let ty = self.value_type();
             params.push(Param { name, ty });
             if !self.eat(Tok::Comma) && !self.eat(Tok::Semi) || self.cur.start == start {
                 break;

@@ -5,7 +5,7 @@ use crate::parse::SWITCHES;
 use g7_iec::constant;
 use g7_model::{
     Array, Document, Expr, Function, Instance, InstanceNames, Item, Limits, Name, NamedAction, Param,
-    Profile, Section, Span, StmtKind, Switch, Use, VarDecl, VarKind,
+    Profile, Section, Span, StmtKind, Switch, Type, Use, ValueType, VarDecl, VarKind,
 };
 
 impl Printer<'_> {
@@ -106,21 +106,7 @@ impl Printer<'_> {
         if let Some(array) = &v.array {
             self.array(array);
         }
-        match (&v.of, v.limits.as_deref()) {
-            (_, Some(Limits::Values(values))) => self.enumeration(values),
-            (_, Some(Limits::Of(name))) => self.name(&name.text),
-            (Some(of), _) => self.name(&of.text),
-            (None, limits) => {
-                self.push(&v.ty.to_string());
-                if let Some(Limits::Range(least, most)) = limits {
-                    self.push("(");
-                    self.expr(least);
-                    self.push("..");
-                    self.expr(most);
-                    self.push(")");
-                }
-            }
-        }
+        self.named_type(v.of.as_deref(), v.ty, v.limits.as_deref());
         self.initial(v.init.as_ref());
         if let Some(address) = &v.address {
             self.push(" at ");
@@ -133,6 +119,30 @@ impl Printer<'_> {
             self.expr(safe);
         }
         self.comment(v.comment.as_deref());
+    }
+
+    /// ` : type` of a parameter, of a local variable or of a result.
+    pub(super) fn value_type(&mut self, ty: &ValueType) {
+        self.push(" : ");
+        self.named_type(ty.of.as_deref(), ty.base, ty.limits.as_deref());
+    }
+
+    fn named_type(&mut self, of: Option<&Name>, ty: Type, limits: Option<&Limits>) {
+        match (of, limits) {
+            (_, Some(Limits::Values(values))) => self.enumeration(values),
+            (_, Some(Limits::Of(name))) => self.name(&name.text),
+            (Some(of), _) => self.name(&of.text),
+            (None, limits) => {
+                self.push(&ty.to_string());
+                if let Some(Limits::Range(least, most)) = limits {
+                    self.push("(");
+                    self.expr(least);
+                    self.push("..");
+                    self.expr(most);
+                    self.push(")");
+                }
+            }
+        }
     }
 
     /// `(Manual, Automatic := 5)`.
@@ -231,7 +241,8 @@ impl Printer<'_> {
         self.push("function ");
         self.name(&function.name.text);
         self.params(&function.params);
-        self.push(&format!(" : {} ", function.result));
+        self.value_type(&function.result);
+        self.push(" ");
         self.block(&function.body);
     }
 
@@ -240,7 +251,7 @@ impl Printer<'_> {
         for (i, param) in params.iter().enumerate() {
             self.push(if i > 0 { ", " } else { "" });
             self.name(&param.name.text);
-            self.push(&format!(" : {}", param.ty));
+            self.value_type(&param.ty);
         }
         self.push(")");
     }

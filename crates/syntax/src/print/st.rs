@@ -35,7 +35,7 @@ impl Printer<'_> {
     fn local(&mut self, local: &Local) {
         self.push("var ");
         self.names(&local.names);
-        self.push(&format!(" : {}", local.ty));
+        self.value_type(&local.ty);
         self.initial(local.init.as_ref());
     }
 

@@ -1,6 +1,6 @@
 //! States, rates, limits, events and drives.
 
-use super::support::{compiled, near, run};
+use super::support::{compiled, near, run, run_text, text};
 
 #[test]
 fn a_rate_is_a_way_in_a_second_and_the_first_tick_takes_no_time() {
@@ -147,4 +147,25 @@ fn constants_and_functions_of_the_file_are_the_plants_too() {
     assert!(compiled(&file.replace('@', "")).is_ok());
     // … unless the plant calls it.
     assert_eq!(compiled(&file.replace('@', "+ ofCharts(1)")).err(), Some(vec!["G0202"]));
+}
+
+/// A local variable of a plant, and a function that it calls, are of the types of the file.
+#[test]
+fn local_variables_have_types_of_the_file() {
+    let types = "type Mode : (Off, Slow := 4, Fast)\ntype Turn : INT(1..3)\n\
+                 function Next(m : Mode, plus : Turn) : Mode { IF m = Mode.Off and plus > 1 THEN Next := Fast END_IF }\n";
+    let items = "state n, k : INT
+        each {
+          var mode : Mode := Slow
+          var turn : Turn
+          k := turn
+          turn := turn + n
+          mode := Next(Mode.Off, turn)
+          n := Mode_TO_INT(mode)
+        }";
+    let mut p = run_text(&format!("{types}{}", text(items)));
+    p.ticks(1);
+    assert_eq!((p.int("n"), p.int("k")), (0, 1));
+    p.set("n", 1).ticks(1);
+    assert_eq!((p.int("n"), p.int("k")), (5, 1));
 }

@@ -46,7 +46,12 @@ pub(crate) struct Run {
 
 /// A plant `P` with these items before its first tick, ten milliseconds a tick.
 pub(crate) fn run(items: &str) -> Run {
-    let (charts, plant) = compiled(&text(items)).unwrap_or_else(|codes| panic!("{codes:?}"));
+    run_text(&text(items))
+}
+
+/// The first plant of a text before its first tick.
+pub(crate) fn run_text(text: &str) -> Run {
+    let (charts, plant) = compiled(text).unwrap_or_else(|codes| panic!("{codes:?}"));
     let inputs = plant.compiled.program.tables().inputs;
     let state = State::new(&plant.compiled.program);
     let inputs = vec![0; (inputs.end - inputs.start) as usize];

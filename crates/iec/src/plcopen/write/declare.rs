@@ -1,11 +1,11 @@
 //! Declarations of variables.
 
-use g7_model::{Composed, Document, Expr, ExprKind, Item, Name, Type, VarDecl, VarKind};
+use g7_model::{Composed, Document, Expr, ExprKind, Item, Name, Type, ValueType, VarDecl, VarKind};
 
 use crate::st::{Known, Writer};
 use crate::xml::element::Element;
 
-/// The type of a variable, a parameter or a result.
+/// A type of the language.
 pub(super) fn type_of(ty: Type) -> Element {
     let inner = match ty {
         Type::String(length) => Element::new("string").with("length", length),
@@ -17,9 +17,18 @@ pub(super) fn type_of(ty: Type) -> Element {
 
 /// The type of a variable; that of an array has a name.
 fn type_of_variable(decl: &VarDecl) -> Element {
-    match &decl.of {
+    named_or(decl.of.as_deref(), decl.ty)
+}
+
+/// The type of a parameter, of a local variable or of a result.
+pub(super) fn type_of_value(ty: &ValueType) -> Element {
+    named_or(ty.of.as_deref(), ty.base)
+}
+
+fn named_or(of: Option<&Name>, ty: Type) -> Element {
+    match of {
         Some(of) => Element::new("type").child(Element::new("derived").with("name", &of.text)),
-        None => type_of(decl.ty),
+        None => type_of(ty),
     }
 }
 

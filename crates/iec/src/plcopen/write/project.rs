@@ -9,7 +9,7 @@ use g7_model::{
 
 use super::codesys::{by_flags, from_outside, is_given, steps_alone};
 use super::control::control;
-use super::declare::{data_types, external, in_order, initial, lists, parameters, type_of};
+use super::declare::{data_types, external, in_order, initial, lists, parameters, type_of, type_of_value};
 use super::sfc::Sfc;
 use crate::Written;
 use crate::nodes::Taken;
@@ -347,13 +347,15 @@ impl<'w> Project<'w> {
     }
 
     fn function(&self, function: &'w Function) -> Element {
-        let mut types = Known::new(self.document, None).own(&function.name.text, function.result);
-        let result = type_of(function.result);
+        let mut types = Known::new(self.document, None).own(&function.name.text, function.result.base);
+        let result = type_of_value(&function.result);
         let mut interface = Element::new("interface").child(result.renamed("returnType"));
         let mut inputs = Element::new("inputVars");
         for param in &function.params {
-            types = types.own(&param.name.text, param.ty);
-            inputs.push(Element::new("variable").with("name", &param.name.text).child(type_of(param.ty)));
+            types = types.own(&param.name.text, param.ty.base);
+            inputs.push(
+                Element::new("variable").with("name", &param.name.text).child(type_of_value(&param.ty)),
+            );
         }
         if !function.params.is_empty() {
             interface.push(inputs);
@@ -361,10 +363,11 @@ impl<'w> Project<'w> {
         let mut locals = Element::new("localVars");
         for local in &function.body.locals {
             for name in &local.names {
-                types = types.own(&name.text, local.ty);
-                let mut variable = Element::new("variable").with("name", &name.text).child(type_of(local.ty));
+                types = types.own(&name.text, local.ty.base);
+                let mut variable =
+                    Element::new("variable").with("name", &name.text).child(type_of_value(&local.ty));
                 if let Some(init) = &local.init {
-                    variable.push(initial(init, local.ty));
+                    variable.push(initial(init, local.ty.base));
                 }
                 locals.push(variable);
             }

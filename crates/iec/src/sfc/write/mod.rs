@@ -10,7 +10,7 @@ use std::collections::HashSet;
 
 use g7_model::{
     Arg, Body, Chart, Composed, Document, Expr, ExprKind, Function, Item, Nanos, Problem, Span, Type,
-    VarDecl, VarKind, codes, say,
+    ValueType, VarDecl, VarKind, codes, say,
 };
 
 use crate::Written;
@@ -219,23 +219,23 @@ impl<'d> Exporter<'d> {
     }
 
     fn function(&self, f: &'d Function) -> String {
-        let mut text = format!("FUNCTION {} : {}\n", f.name.text, type_name(f.result));
-        let mut types = Known::new(self.document, None).own(&f.name.text, f.result);
+        let mut text = format!("FUNCTION {} : {}\n", f.name.text, value_type(&f.result));
+        let mut types = Known::new(self.document, None).own(&f.name.text, f.result.base);
         if !f.params.is_empty() {
             text.push_str("  VAR_INPUT\n");
             for p in &f.params {
-                text.push_str(&format!("    {} : {};\n", p.name.text, type_name(p.ty)));
-                types = types.own(&p.name.text, p.ty);
+                text.push_str(&format!("    {} : {};\n", p.name.text, value_type(&p.ty)));
+                types = types.own(&p.name.text, p.ty.base);
             }
             text.push_str("  END_VAR\n");
         }
         if !f.body.locals.is_empty() {
             text.push_str("  VAR\n");
             for local in &f.body.locals {
-                let init = initial(local.init.as_ref(), local.ty);
+                let init = initial(local.init.as_ref(), local.ty.base);
                 for name in &local.names {
-                    text.push_str(&format!("    {} : {}{init};\n", name.text, type_name(local.ty)));
-                    types = types.own(&name.text, local.ty);
+                    text.push_str(&format!("    {} : {}{init};\n", name.text, value_type(&local.ty)));
+                    types = types.own(&name.text, local.ty.base);
                 }
             }
             text.push_str("  END_VAR\n");
@@ -288,6 +288,11 @@ fn initial_value(e: &Expr, ty: Option<Type>) -> String {
 /// A comment must not contain the sign that ends it.
 fn clean(text: &str) -> String {
     text.replace("*)", "* )").replace("(*", "( *").replace(['\n', '\r'], " ")
+}
+
+/// The type of a parameter, of a local variable or of a result.
+fn value_type(ty: &ValueType) -> String {
+    ty.of.as_ref().map_or_else(|| type_name(ty.base), |of| of.text.to_string())
 }
 
 fn type_name(ty: Type) -> String {

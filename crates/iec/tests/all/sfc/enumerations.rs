@@ -300,7 +300,7 @@ fn an_enumeration_without_a_name_gets_one() {
     }
 }
 
-/// Members, elements, parameters of function blocks, in-outs and outputs are of the type; a function has numbers.
+/// Members, elements, parameters, in-outs and outputs are of the type.
 #[test]
 fn structures_arrays_and_parameters_are_of_the_type() {
     let types = "TYPE Mode : (Off, Auto, Hand); Part : STRUCT mode : Mode; row : ARRAY[0..2] OF Mode; END_STRUCT; END_TYPE
@@ -326,15 +326,66 @@ END_FUNCTION_BLOCK";
         "inout kept : Mode",
         "mode : Mode",
         "row : ARRAY[0..2] OF Mode",
-        "IF m = Mode_TO_INT(Hand) THEN Rank := 10 ELSE Rank := m END_IF",
+        "function Rank(m : Mode) : INT",
+        "IF m = Hand THEN Rank := 10 ELSE Rank := Mode_TO_INT(m) END_IF",
         "parts[i].row[2] := Hand",
-        "out := Rank(Mode_TO_INT(g)) + Rank(m := Mode_TO_INT(Auto))",
+        "out := Rank(g) + Rank(m := Auto)",
     ] {
         has(&text, part);
     }
     let mut bench = Bench::new(&found);
     bench.scan();
     assert_eq!((bench.get("g"), bench.get("k"), bench.get("out")), (2, 2, 11));
+}
+
+const NEXT: &str = "TYPE Mode : (Off, Auto := 5, Hand); END_TYPE
+FUNCTION Next : Mode
+  VAR_INPUT m : Mode; plus : INT; END_VAR
+  VAR last : Mode := Hand; first : Mode; END_VAR
+  CASE m OF Off: Next := Auto; Auto: Next := last; ELSE Next := first; END_CASE;
+END_FUNCTION";
+
+/// Parameters, results and local variables of functions are of the type.
+#[test]
+fn functions_take_and_give_values() {
+    let (found, problems) = import(&program(
+        NEXT,
+        "m : Mode;",
+        "m := Next(m, 5); out := Next(0, 1); IF Next(plus := n, m := m) = Off THEN out := out + 100; END_IF;",
+    ));
+    assert_eq!(problems, []);
+    let text = g7_syntax::print(&found, None);
+    for part in [
+        "function Next(m : Mode, plus : INT) : Mode {",
+        "var last : Mode := Hand",
+        "var first : Mode",
+        "Off: Next := Auto",
+        "m := Next(m, 5)",
+        "out := Mode_TO_INT(Next(Off, 1))",
+        "IF Next(plus := n, m := m) = Off THEN",
+    ] {
+        has(&text, part);
+    }
+    let mut bench = Bench::new(&found);
+    let mut seen = Vec::new();
+    for _ in 0..3 {
+        bench.scan();
+        seen.push((bench.get("m"), bench.get("out")));
+    }
+    assert_eq!(seen, [(5, 5), (6, 105), (0, 5)]);
+}
+
+/// A number that no value has makes numbers of a parameter and of a result, too.
+#[test]
+fn functions_that_get_other_numbers_have_numbers() {
+    for (action, place) in [("m := Next(n, 1);", "n"), ("m := n; out := Next(m, 1);", "n")] {
+        let (what, found) = stays(NEXT, "m : Mode;", action);
+        assert_eq!(
+            what, "the enumeration `Mode` is read as numbers: here it gets one that is no value",
+            "{place}"
+        );
+        has(&g7_syntax::print(&found, None), "function Next(m : INT, plus : INT) : INT {");
+    }
 }
 
 /// An input and an output that share a variable are of one type.

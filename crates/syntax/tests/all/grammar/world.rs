@@ -5,7 +5,7 @@ use crate::grammar::read;
 use crate::grammar::statements::lines;
 use g7_model::{
     FbKind, FileId, Item, Name, Nanos, Placed, PlantItem, ProfileName, PropertyKind, Switch, TargetPlc,
-    TestStmt, TestStmtKind, Type, VarKind,
+    TestStmt, TestStmtKind, Type, ValueType, VarKind,
 };
 use g7_syntax::{LineColumn, LineIndex, parse, print};
 
@@ -89,9 +89,19 @@ fn every_type() {
 fn functions_have_parameters_and_locals() {
     let d = read("function Full(level : REAL, n : INT) : BOOL { var k, m : INT := 1; Full := level > k }");
     let Item::Function(f) = &d.items[0] else { panic!("{d:?}") };
-    assert_eq!((f.params.len(), f.params[1].ty, f.result), (2, Type::Int, Type::Bool));
-    assert_eq!((f.body.locals[0].names.len(), f.body.locals[0].ty), (2, Type::Int));
+    assert_eq!((f.params.len(), &f.params[1].ty, &f.result), (2, &Type::Int.into(), &Type::Bool.into()));
+    assert_eq!((f.body.locals[0].names.len(), &f.body.locals[0].ty), (2, &Type::Int.into()));
     assert_eq!(lines(&f.body.statements), "Full <- (gt level k)");
+}
+
+#[test]
+fn a_parameter_a_local_variable_and_a_result_can_have_a_type_of_the_file() {
+    let d = read("function Next(m : Mode, plus : INT(0..9)) : Mode { var last : `step`; Next := m }");
+    let Item::Function(f) = &d.items[0] else { panic!("{d:?}") };
+    let named = |ty: &ValueType| ty.of.as_ref().map(|of| of.text.to_string());
+    let types = [&f.params[0].ty, &f.params[1].ty, &f.result, &f.body.locals[0].ty];
+    assert_eq!(types.map(named), [Some("Mode".into()), None, Some("Mode".into()), Some("step".into())]);
+    assert_eq!((f.params[1].ty.base, f.params[1].ty.range()), (Type::Int, Some((0, 9))));
 }
 
 #[test]

@@ -1,8 +1,8 @@
 //! Random documents.
 
 use crate::roundtrip::expressions::{
-    args, block, chart_path, direct, duration, element, expr, fields, name, path, simple_stmt, text, ty,
-    values,
+    args, block, chart_path, declared_type, direct, duration, element, expr, fields, name, path, simple_stmt,
+    text, value_type, values,
 };
 use crate::roundtrip::world;
 use g7_model::{
@@ -72,20 +72,6 @@ fn variable() -> impl Strategy<Value = VarDecl> {
             at: at(),
         },
     )
-}
-
-/// A type of the language, the name of one that the file declares, or one with bounds.
-fn declared_type() -> impl Strategy<Value = (Type, Option<Box<Name>>, Option<Limits>)> {
-    let own = name().prop_filter("a type of the language", |n| {
-        g7_iec::constant::type_named(&n.text).is_none() && !n.text.starts_with(|c: char| c.is_ascii_digit())
-    });
-    let whole: Vec<Type> = Type::ELEMENTARY.into_iter().filter(|ty| ty.is_integer()).collect();
-    let bounded = (prop::sample::select(whole), expr(), expr());
-    prop_oneof![
-        4 => ty().prop_map(|ty| (ty, None, None)),
-        1 => own.prop_map(|of| (Type::Bool, Some(Box::new(of)), None)),
-        1 => bounded.prop_map(|(ty, least, most)| (ty, None, Some(Limits::Range(least, most)))),
-    ]
 }
 
 fn composed() -> impl Strategy<Value = Composed> {
@@ -273,7 +259,7 @@ fn chain(items: &mut [ChartItem]) {
 }
 
 pub(crate) fn param() -> impl Strategy<Value = Param> {
-    (name(), ty()).prop_map(|(name, ty)| Param { name, ty })
+    (name(), value_type()).prop_map(|(name, ty)| Param { name, ty })
 }
 
 /// An enumeration, or what a variable can be of.
@@ -325,7 +311,7 @@ fn item() -> impl Strategy<Value = Item> {
             let switches = switches.into_iter().map(|s| (s, at())).collect();
             Item::Profile(Profile { name, switches, at: at() })
         });
-    let function = (name(), prop::collection::vec(param(), 0..3), ty(), block()).prop_map(
+    let function = (name(), prop::collection::vec(param(), 0..3), value_type(), block()).prop_map(
         |(name, params, result, body)| Item::Function(Function { name, params, result, body, at: at() }),
     );
     prop_oneof![

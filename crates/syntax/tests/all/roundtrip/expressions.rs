@@ -1,8 +1,8 @@
 //! Random names, expressions and statements.
 
 use g7_model::{
-    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Literal, Local, Moment, Name, Nanos, Path, Place,
-    Span, Stmt, StmtKind, Type, UnaryOp,
+    Arg, BinaryOp, Block, CaseArm, Expr, ExprKind, FbKind, Limits, Literal, Local, Moment, Name, Nanos, Path,
+    Place, Span, Stmt, StmtKind, Type, UnaryOp, ValueType,
 };
 use proptest::prelude::*;
 
@@ -303,8 +303,27 @@ fn arm(body: impl Strategy<Value = Vec<Stmt>>) -> impl Strategy<Value = CaseArm>
 }
 
 pub(crate) fn block() -> impl Strategy<Value = Block> {
-    let local = (prop::collection::vec(name(), 1..3), ty(), prop::option::of(small_expr()))
+    let local = (prop::collection::vec(name(), 1..3), value_type(), prop::option::of(small_expr()))
         .prop_map(|(names, ty, init)| Local { names, ty, init, at: at() });
     (prop::collection::vec(local, 0..2), prop::collection::vec(stmt(), 0..4))
         .prop_map(|(locals, statements)| Block { locals, statements, at: at() })
+}
+
+/// A type of the language, the name of one that the file declares, or one with bounds.
+pub(crate) fn declared_type() -> impl Strategy<Value = (Type, Option<Box<Name>>, Option<Limits>)> {
+    let own = name().prop_filter("a type of the language", |n| {
+        g7_iec::constant::type_named(&n.text).is_none() && !n.text.starts_with(|c: char| c.is_ascii_digit())
+    });
+    let whole: Vec<Type> = Type::ELEMENTARY.into_iter().filter(|ty| ty.is_integer()).collect();
+    let bounded = (prop::sample::select(whole), expr(), expr());
+    prop_oneof![
+        4 => ty().prop_map(|ty| (ty, None, None)),
+        1 => own.prop_map(|of| (Type::Bool, Some(Box::new(of)), None)),
+        1 => bounded.prop_map(|(ty, least, most)| (ty, None, Some(Limits::Range(least, most)))),
+    ]
+}
+
+/// The type of a parameter, of a local variable or of a result.
+pub(crate) fn value_type() -> impl Strategy<Value = ValueType> {
+    declared_type().prop_map(|(base, of, limits)| ValueType { base, of, limits: limits.map(Box::new) })
 }
