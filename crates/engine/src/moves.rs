@@ -134,16 +134,17 @@ struct Found {
 }
 
 impl Found {
-    /// Judges some of the 64 steps of word `i`. Tells those whose receptivity is FALSE.
+    /// Judges some of the 64 steps of word `i`. With `TELL`, returns those whose receptivity is FALSE.
     #[inline(always)]
-    fn judge(&mut self, p: &Program, image: &[u64], i: u32, steps: u64) -> u64 {
+    fn judge<const TELL: bool>(&mut self, p: &Program, image: &[u64], i: u32, steps: u64) -> u64 {
         let (mut rest, mut closed) = (steps, 0);
         while rest != 0 {
             let step = i * 64 + rest.trailing_zeros();
             match p.hot.get(step as usize) {
                 Some(h) if h.waits_for == NONE => self.slow.push(step),
                 Some(h) if holds(p, image, h) => self.fired.push(h.rank),
-                _ => closed |= rest & rest.wrapping_neg(),
+                _ if TELL => closed |= rest & rest.wrapping_neg(),
+                _ => {}
             }
             rest &= rest - 1;
         }
@@ -154,14 +155,15 @@ impl Found {
 /// The work of [`collect`] where no step sleeps. Returns the only active step, or `NONE`.
 #[inline(always)]
 fn look(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut Rest) -> u32 {
-    let (mut several, mut last, mut waiting) = (false, NONE, 0);
+    let (mut several, mut last, mut words) = (false, NONE, 0);
     steps.each_word(image, |i, active| {
-        several |= last != NONE || !active.is_power_of_two();
+        several |= !active.is_power_of_two();
         last = i * 64 + active.trailing_zeros();
-        waiting += u32::from(found.judge(p, image, i, active) != 0);
+        words += 1;
+        found.judge::<false>(p, image, i, active);
     });
-    rest.begin(waiting);
-    if several { NONE } else { last }
+    rest.begin(words, found.fired.len() + found.slow.len());
+    if several || words > 1 { NONE } else { last }
 }
 
 /// As [`look`], where steps sleep. Where one token alone is left, sleep ends.
@@ -172,7 +174,7 @@ fn look_at_stirred(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, 
     rest.look(&p.sleepers, active, |i, awake| {
         several |= last != NONE || !awake.is_power_of_two();
         last = i * 64 + awake.trailing_zeros();
-        found.judge(p, image, i, awake)
+        found.judge::<true>(p, image, i, awake)
     });
     if several || last == NONE || !steps.has_only(image, last) {
         return NONE;

@@ -29,12 +29,14 @@ use crate::tables::{NONE, Receptivity, Tables};
 /// With fewer such steps it is cheaper to look at each.
 const FEWEST: usize = 64;
 
-/// Sleep begins where a pass finds steps that wait in this many words of 64 steps.
+/// Sleep begins where a pass looks at this many words of 64 steps, and most steps wait.
 const MANY: u32 = 8;
 
-/// Sleep ends where a variable changes for which steps in more words of 64 wait: to wake them would cost more
-/// than to look at those that are active.
-const CROWD: usize = 64;
+/// Sleep ends where steps in more words of 64 are woken between two passes: then it saves little.
+const CROWD: usize = 8;
+
+/// Number of passes before sleep may begin again.
+const PAUSE: u32 = 64;
 
 /// The steps that can sleep, and the variables that wake them.
 #[derive(Clone, Debug, Default)]
@@ -95,7 +97,8 @@ impl Sleepers {
     /// A new state, in which nobody sleeps.
     pub(crate) fn rest(&self) -> Rest {
         let words = self.can.len();
-        Rest { on: false, asleep: vec![0; words].into(), stirred: vec![0; words.div_ceil(64)].into() }
+        let stirred = vec![0; words.div_ceil(64)].into();
+        Rest { asleep: vec![0; words].into(), stirred, ..Rest::default() }
     }
 
     /// The steps that can sleep among the 64 of a word.
@@ -110,8 +113,10 @@ impl Sleepers {
         let at = addr.0 as usize;
         let (Some(&from), Some(&to)) = (self.of_word.get(at), self.of_word.get(at + 1)) else { return };
         let wakes = self.wakes.get(from as usize..to as usize).unwrap_or(&[]);
-        if wakes.len() > CROWD {
+        rest.woken += wakes.len();
+        if rest.woken > CROWD {
             rest.on = false;
+            rest.pause = PAUSE;
             return;
         }
         for (i, steps) in wakes {
@@ -126,8 +131,12 @@ impl Sleepers {
 /// Who sleeps in a state; without words where no step can.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Rest {
-    /// Steps sleep. If not, nothing else here means anything.
+    /// Steps sleep. If not, `asleep` and `stirred` mean nothing.
     on: bool,
+    /// Number of passes before sleep may begin.
+    pause: u32,
+    /// Number of words of 64 steps that were woken since the last pass.
+    woken: usize,
     /// Steps whose receptivity is known to be FALSE, a bit each.
     asleep: Box<[u64]>,
     /// The words of 64 steps that a pass must look at, a bit each.
@@ -153,19 +162,24 @@ impl Rest {
         self.on = false;
     }
 
-    /// Lets steps sleep from now on, where a pass has found that so many words of 64 have one that waits.
+    /// Lets steps sleep from now on, where a pass has looked at so many words of 64 steps and has found so many steps
+    /// that do not wait.
     #[inline(always)]
-    pub(crate) fn begin(&mut self, waiting: u32) {
-        if waiting >= MANY && !self.asleep.is_empty() {
-            self.stir_all();
+    pub(crate) fn begin(&mut self, words: u32, found: usize) {
+        if words >= MANY && found < words as usize {
+            self.try_to_begin();
         }
     }
 
     #[inline(never)]
-    fn stir_all(&mut self) {
-        self.on = true;
-        self.asleep.fill(0);
-        self.stirred.fill(u64::MAX);
+    fn try_to_begin(&mut self) {
+        self.pause = self.pause.saturating_sub(1);
+        if self.pause == 0 && !self.asleep.is_empty() {
+            self.on = true;
+            self.woken = 0;
+            self.asleep.fill(0);
+            self.stirred.fill(u64::MAX);
+        }
     }
 
     /// Calls `judge` with the index of each stirred word and its active steps that do not sleep. It returns
@@ -177,6 +191,7 @@ impl Rest {
         active: impl Fn(u32) -> u64,
         mut judge: impl FnMut(u32, u64) -> u64,
     ) {
+        self.woken = 0;
         for (k, stirred) in (0u32..).zip(&mut self.stirred) {
             let mut words = *stirred;
             while words != 0 {

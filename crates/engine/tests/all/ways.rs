@@ -368,14 +368,15 @@ fn a_lone_token_goes_the_same_way() {
 }
 
 /// Many steps that are active at once, each with one transition, which waits for an input, a variable that code
-/// writes, a variable that is written from outside, or an output that follows a step. In the largest, each input
-/// wakes so many that nobody sleeps long.
+/// writes, a variable that is written from outside, or an output that follows a step. An input wakes a third of the
+/// steps, which in the largest charts are so many that sleep ends.
 fn crowd(chance: &mut Chance, rules: Rules) -> Tables {
     let steps = if chance.below(30) == 0 { 4300 } else { 80 + chance.below(1000) };
+    let third = |step: u32| step * 3 / steps;
     let arcs: Vec<Arc> = (0..steps)
         .map(|from| {
             let to = if chance.below(3) == 0 { chance.below(steps) } else { (from + 1) % steps };
-            let input = chance.below(3) as i32;
+            let input = third(from) as i32;
             (vec![from], vec![to], Some(if chance.below(4) == 0 { -1 - input } else { input }))
         })
         .collect();
@@ -383,7 +384,7 @@ fn crowd(chance: &mut Chance, rules: Rules) -> Tables {
     let mut t = chart(rules, steps, 3, &initial, &arcs);
     let variables = t.init.len() as u32;
     t.init.extend([0, 0]);
-    for transition in &mut t.transitions {
+    for (from, transition) in (0..).zip(&mut t.transitions) {
         let start = t.code.len() as u32;
         let leaf = match chance.below(8) {
             0 => Op::Load(Addr(variables)),
@@ -394,7 +395,7 @@ fn crowd(chance: &mut Chance, rules: Rules) -> Tables {
         match leaf {
             Op::Load(a) if chance.below(2) == 0 => transition.receptivity = Receptivity::Word(a),
             leaf => {
-                t.code.extend([leaf, Op::Load(Addr(chance.below(3))), Op::Or]);
+                t.code.extend([leaf, Op::Load(Addr(third(from))), Op::Or]);
                 transition.receptivity = Receptivity::Code(Code { start, end: start + 3 });
             }
         }
@@ -421,16 +422,18 @@ fn steps_that_sleep_are_woken() {
         let long = roundabout(&tables);
         let mut both = Both::new(tables, long);
         let mut earlier = [&both.a, &both.b].map(|s| s.image().to_vec());
-        for k in 0..60 {
-            both.move_inputs(&mut chance);
+        for k in 0..100 {
+            if chance.below(3) == 0 {
+                both.inputs[chance.below(3) as usize] ^= 1;
+            }
             both.disturb(&mut chance);
-            if chance.below(4) == 0 {
+            if chance.below(30) == 0 {
                 let value = u64::from(chance.below(2));
                 both.a.set_word(&both.short, outside, value);
                 both.b.set_word(&both.long, outside, value);
             }
             // A state that goes back to an earlier image forgets what it has seen since.
-            if chance.below(10) == 0 {
+            if chance.below(30) == 0 {
                 both.a.restore(&both.short, &earlier[0]).expect("the image is of this program");
                 both.b.restore(&both.long, &earlier[1]).expect("the image is of this program");
             } else if chance.below(4) == 0 {
