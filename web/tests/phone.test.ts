@@ -107,6 +107,10 @@ test('a chart of three steps is drawn, named and run with fingers alone', async 
   await hand.choose('G1/s/2');
   await hand.slide([await hand.middle(page.getByRole('button', { name: 'Drag to link' }))], [await core(page, 'G1/s/0')]);
   await until(async () => (await page.locator('.sheet [data-id^="G1/t/"]').count()) === 3, 'a transition leads back');
+  // Its receptivity is asked for.
+  await type(hand, '1');
+  await hand.press('Done');
+  await field(hand).waitFor({ state: 'detached' });
   for (const [id, name, action] of [['1', 'fill', 'valve'], ['2', 'stir', 'motor']] as const) {
     await hand.tapTwice(await core(page, `G1/s/${id}`));
     await type(hand, name);
