@@ -192,19 +192,24 @@ impl<'d> Lower<'d> {
         into.extend(list);
     }
 
+    /// The name that a parameter or a local variable of a function has there.
+    fn inner_name(&self, f: &Function, name: &Name) -> String {
+        self.names.inner(&f.name.text, &name.text).unwrap_or(&name.text).to_owned()
+    }
+
     fn function(&mut self, f: &'d Function) -> Function {
         let own = self.names.function(&f.name.text).unwrap_or(&f.name.text).to_string();
         let mut locals = vec![(f.name.text.clone(), own.clone())];
         let mut params = Vec::new();
         for p in &f.params {
-            let text = self.names.inner(&p.name.text);
+            let text = self.inner_name(f, &p.name);
             locals.push((p.name.text.clone(), text.clone()));
             params.push(Param { name: Name::new(text, p.name.at.0), ty: p.ty.clone() });
         }
         let mut inner = Vec::new();
         for local in &f.body.locals {
             let names: Vec<Name> =
-                local.names.iter().map(|n| Name::new(self.names.inner(&n.text), n.at.0)).collect();
+                local.names.iter().map(|n| Name::new(self.inner_name(f, n), n.at.0)).collect();
             locals.extend(local.names.iter().zip(&names).map(|(n, t)| (n.text.clone(), t.text.to_string())));
             let init = local.init.as_ref().map(|e| self.constant(e, None));
             inner.push(Local { names, ty: local.ty.clone(), init, at: local.at });

@@ -63,8 +63,9 @@ impl<'d> Lower<'d> {
                 return self.timer(t1, inner, t2.as_deref(), span, at);
             }
             ExprKind::Call(path, args) => {
-                let path = self.function_name(path);
-                ExprKind::Call(path, self.args(args, at))
+                let mut args = self.args(args, at);
+                args.iter_mut().filter_map(|a| a.name.as_mut()).for_each(|n| self.parameter_name(path, n));
+                ExprKind::Call(self.function_name(path), args)
             }
         };
         Expr { kind, at: e.at }
@@ -78,6 +79,15 @@ impl<'d> Lower<'d> {
                 None => nodes::path(&[&name.text.to_ascii_uppercase()], span),
             },
             _ => path.clone(),
+        }
+    }
+
+    /// The name that a parameter of a function of the file has there.
+    fn parameter_name(&self, called: &Path, name: &mut Name) {
+        if let [function] = called.names.as_slice()
+            && let Some(own) = self.names.inner(&function.text, &name.text)
+        {
+            name.text = own.into();
         }
     }
 

@@ -3,7 +3,7 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Name, Span};
+use g7_model::{Function, Name, Span};
 
 use crate::nodes::Taken;
 use crate::scopes::{Scopes, StepKey};
@@ -27,6 +27,8 @@ pub(super) struct Names {
     /// Named actions and sections.
     parts: HashMap<(Option<usize>, Box<str>), String>,
     functions: HashMap<Box<str>, String>,
+    /// The names of the parameters and local variables of a function.
+    inner: HashMap<(Box<str>, Box<str>), String>,
     /// The names of variables and of steps, in upper case.
     of_vars: HashSet<(Owner, String)>,
     of_steps: HashSet<(Owner, String)>,
@@ -57,6 +59,7 @@ impl Names {
             steps: HashMap::new(),
             parts: HashMap::new(),
             functions: HashMap::new(),
+            inner: HashMap::new(),
             of_vars: HashSet::new(),
             of_steps: HashSet::new(),
             twins: HashSet::new(),
@@ -168,9 +171,23 @@ impl Names {
         self.parts.insert((chart, name.text.clone()), text);
     }
 
-    pub(super) fn give_function(&mut self, name: &Name) {
-        let text = self.give(None, name, "", "");
-        self.functions.insert(name.text.clone(), text);
+    /// The name of a function, and those that only it sees.
+    pub(super) fn give_function(&mut self, f: &Function) {
+        let text = self.give(None, &f.name, "", "");
+        let mut taken = Taken::default();
+        taken.take(&text);
+        self.functions.insert(f.name.text.clone(), text);
+        let locals = f.body.locals.iter().flat_map(|l| &l.names);
+        for name in f.params.iter().map(|p| &p.name).chain(locals) {
+            let wish = identifier(&name.text);
+            let own = loop {
+                let own = taken.give(&wish);
+                if !self.reserved.contains(own.to_ascii_uppercase().as_str()) {
+                    break own;
+                }
+            };
+            self.inner.insert((f.name.text.clone(), name.text.clone()), own);
+        }
     }
 
     /// Names of steps. A step of which `Fill.X` or `Fill.T` is read shares one name space with
@@ -235,9 +252,8 @@ impl Names {
         self.functions.get(name).map(String::as_str)
     }
 
-    /// A name that only its function sees.
-    pub(super) fn inner(&self, name: &str) -> String {
-        let text = identifier(name);
-        if self.reserved.contains(text.to_ascii_uppercase().as_str()) { format!("{text}_2") } else { text }
+    /// A name that only its function sees; `None` for one that it does not have.
+    pub(super) fn inner(&self, function: &str, name: &str) -> Option<&str> {
+        self.inner.get(&(function.into(), name.into())).map(String::as_str)
     }
 }

@@ -257,7 +257,7 @@ impl<'d> Lower<'d> {
         // Functions come first, so that each function block and the rest of the file know them by the same names.
         for item in &document.items {
             if let Item::Function(f) = item {
-                self.names.give_function(&f.name);
+                self.names.give_function(f);
             }
         }
         for item in &document.items {

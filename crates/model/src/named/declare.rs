@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 
-use super::values;
+use super::concerned::is_concerned;
 use crate::composed::{DEEP, defined_twice, of_language, unknown_type};
 use crate::{
     Array, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Name, Path, Problem, Span, Type,
@@ -22,19 +22,6 @@ pub fn declared(document: &Document) -> (Cow<'_, Document>, Vec<Problem>) {
     let mut types = Types::of(document);
     let items = document.items.iter().filter_map(|item| types.item(item)).collect();
     (Cow::Owned(Document { items, notes: document.notes.clone() }), types.problems)
-}
-
-/// True for a document that declares types, or in which something has bounds or names a type.
-fn is_concerned(document: &Document) -> bool {
-    let limited = |v: &VarDecl| v.limits.is_some();
-    let concerned = |i: &Item| match i {
-        Item::Type(_) => true,
-        Item::Var(v) => limited(v),
-        Item::Chart(c) => c.vars().any(limited),
-        Item::Composed(c) => c.members.iter().chain(&c.inouts).any(limited),
-        _ => false,
-    };
-    document.items.iter().any(concerned) || values::any(document)
 }
 
 /// The declared types of a file.

@@ -3,8 +3,8 @@
 use std::borrow::Cow;
 
 use super::checks::Checks;
+use super::concerned::is_concerned;
 use super::scopes::{Admits, Around, Found, Scopes, Var};
-use super::values;
 use crate::{
     Arg, BinaryOp, Chart, ChartItem, Document, Expr, ExprKind, Item, Limits, Literal, Path, Problem, Said,
     Span, StandardFunction, Type, VarDecl, VarKind, codes, say,
@@ -37,14 +37,7 @@ pub struct Checker<'d> {
 impl<'d> Checker<'d> {
     /// None if a document that [`super::declared`] gave has no enumerations and no bounds.
     pub fn of(document: &'d Document) -> Option<Checker<'d>> {
-        let concerned = |i: &Item| match i {
-            Item::Type(_) => true,
-            Item::Var(v) => v.limits.is_some(),
-            Item::Chart(c) => c.vars().any(|v| v.limits.is_some()),
-            _ => false,
-        };
-        let concerned = document.items.iter().any(concerned) || values::any(document);
-        concerned.then(|| Checker {
+        is_concerned(document).then(|| Checker {
             scopes: Scopes::of(document),
             checks: Checks::default(),
             problems: Vec::new(),

@@ -17,6 +17,7 @@
 //! - No variable with bounds ever holds a value outside of them. A value of an enumeration has no operation but `=` and `<>`.
 
 mod checks;
+mod concerned;
 mod declare;
 mod held;
 mod scopes;

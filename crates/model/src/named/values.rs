@@ -3,37 +3,10 @@
 use std::collections::HashMap;
 
 use super::declare::Types;
-use crate::visit::Visitor;
 use crate::{
-    Block, Document, Expr, ExprKind, Function, Name, Order, Param, Path, Problem, Span, Stmt, StmtKind,
-    ValueType, VarDecl, VarKind, codes, say,
+    Block, Expr, ExprKind, Function, Name, Param, Path, Problem, Stmt, StmtKind, ValueType, VarDecl, VarKind,
+    codes, say,
 };
-
-/// True if a parameter, a local variable or a result of the document has bounds or names a type.
-pub(super) fn any(document: &Document) -> bool {
-    let mut looking = Looking(false);
-    looking.document(document);
-    looking.0
-}
-
-/// Looks at types and passes over all else.
-struct Looking(bool);
-
-impl<'d> Visitor<'d> for Looking {
-    fn path(&mut self, _: &'d [Name]) {}
-
-    fn direct(&mut self, _: &'d str, _: Span) {}
-
-    fn order(&mut self, _: &'d Order) {}
-
-    fn value_type(&mut self, ty: &'d ValueType) {
-        self.0 |= !ty.is_plain();
-    }
-
-    fn expr(&mut self, _: &'d Expr) {}
-
-    fn statement(&mut self, _: &'d Stmt) {}
-}
 
 impl Types<'_> {
     pub(super) fn params(&mut self, params: &mut [Param]) {

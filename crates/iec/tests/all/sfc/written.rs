@@ -334,6 +334,26 @@ fn programs_have_a_variable_and_texts_stand_where_they_are_used() {
     }
 }
 
+/// Parameters and local variables of a function whose names are words there, or have letters that are none, get other
+/// names, each one of its own; a call that names them follows.
+#[test]
+fn arguments_have_the_names_of_the_parameters() {
+    let written = export(&document(
+        "profile iec61131\ninput a : BOOL\noutput q : INT\n\
+         function Pick(on : BOOL, on_2 : BOOL, début : INT) : INT { var mid : INT := 3  Pick := SEL(on, mid, SEL(on_2, 0, début)) }\n\
+         chart G { initial step A { each scan: { q := Pick(début := 7, on := a, on_2 := not a) } }  step B  A -> B when a }",
+    ));
+    let heads = "VAR_INPUT\n    on_2 : BOOL;\n    on_2_2 : BOOL;\n    debut : INT;\n  END_VAR\n";
+    assert!(written.text.contains(heads), "{}", written.text);
+    let body = "Pick := SEL(on_2, mid_2, SEL(on_2_2, 0, debut));";
+    assert!(written.text.contains(body), "{}", written.text);
+    let call = "q := Pick(debut := 7, on_2 := a, on_2_2 := NOT a);";
+    assert!(written.text.contains(call), "{}", written.text);
+    if let Some(matiec) = g7_peers::matiec() {
+        assert_eq!(compile(&matiec, &written.text), Ok(()), "{}", written.text);
+    }
+}
+
 /// The judgement of matiec on a text.
 pub(crate) fn compile(matiec: &g7_peers::Matiec, text: &str) -> Result<(), String> {
     static CALLS: AtomicUsize = AtomicUsize::new(0);
