@@ -23,6 +23,8 @@ const row = (page: Page, name: string) => dialog(page).locator('li').filter({ ha
 
 async function wiring(machine: Machine, size = DESK): Promise<Page & { errors: string[] }> {
   const page = await open(b, { url: machine.url, stop: async () => undefined }, undefined, size);
+  // The bar of a telephone has it in its menu.
+  if (size === PHONE) await page.getByRole('button', { name: 'More', exact: true }).click();
   await page.getByRole('button', { name: 'Wiring', exact: true }).click();
   await row(page, 'rack1').waitFor();
   return page;
