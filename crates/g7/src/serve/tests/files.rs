@@ -185,19 +185,27 @@ async fn read_only_writes_nothing() {
 #[tokio::test]
 async fn changes_outside_are_told_once_to_every_page() {
     let server = Server::new().await;
+    // A file that is emptied before it is written would be told twice.
+    let put = |name: &str, text: &str| {
+        let aside = server.root.join("aside");
+        fs::write(&aside, text)
+            .and_then(|()| fs::rename(&aside, server.path(name)))
+            .expect("a change outside");
+    };
     let (mut one, mut two) = (server.live().await, server.live().await);
     // Both clients are connected before the change.
     one.call(json!({ "do": "runs" })).await;
     two.call(json!({ "do": "runs" })).await;
-    fs::write(server.path("chart.g7"), "theirs").expect("a change outside");
+    put("chart.g7", "theirs");
     let hash = fingerprint::hash(b"theirs");
     for page in [&mut one, &mut two] {
         assert_eq!(page.hear_of("changed").await, json!({ "path": "chart.g7", "hash": hash }));
     }
     // A file of the same length and the same second counts as changed too.
-    fs::write(server.path("chart.g7"), "THEIRS").expect("a change outside");
+    let mut file = fs::OpenOptions::new().write(true).open(server.path("chart.g7")).expect("the chart");
+    std::io::Write::write_all(&mut file, b"THEIRS").expect("a change outside");
     assert_eq!(one.hear_of("changed").await["hash"], fingerprint::hash(b"THEIRS"));
-    fs::write(server.path("more.g7"), "new").expect("a new file");
+    put("more.g7", "new");
     assert_eq!(one.hear_of("changed").await["path"], "more.g7");
     fs::remove_file(server.path("more.g7")).expect("gone");
     assert_eq!(one.hear_of("changed").await, json!({ "path": "more.g7", "hash": "" }));
