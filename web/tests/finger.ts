@@ -5,6 +5,9 @@ import { box, core, drawn, type Site } from './lib';
 export const UPRIGHT = { width: 390, height: 844 };
 export const LYING = { width: 844, height: 390 };
 
+/** So long a finger rests at the end of a drag, in ms. */
+const REST = 200;
+
 type Place = readonly [x: number, y: number];
 
 /** A page on a telephone, with the settings of its user; errors in it make the test fail at its end. */
@@ -56,12 +59,15 @@ export class Hand {
     await Promise.all(events.map((event) => this.screen.send('Input.dispatchTouchEvent', event)));
   }
 
-  /** Two places that move from here to there, or one. */
+  /** Two places that move from here to there, or one. The fingers rest before they leave: after a flick, Chromium takes the
+   * next tap as the end of a fling and sends no click. */
   async slide(from: Place[], to: Place[]): Promise<void> {
     await this.#touch('touchStart', ...from);
     for (let n = 1; n <= 8; n++) {
       await this.#touch('touchMove', ...from.map(([x, y], i): Place => [x + (((to[i]?.[0] ?? x) - x) * n) / 8, y + (((to[i]?.[1] ?? y) - y) * n) / 8]));
     }
+    await new Promise((done) => setTimeout(done, REST));
+    await this.#touch('touchMove', ...to);
     await this.#touch('touchEnd');
     await drawn(this.page);
   }

@@ -133,7 +133,6 @@ test('a new problem is told, and that there is none any more', async () => {
   ] as const) {
     const page = await openWith(b, site, 'line.g7', { language });
     const heard = await listen(page);
-    await page.waitForTimeout(1000);
     await press(page, 'G1/t/0');
     await page.keyboard.press('Enter');
     await page.locator('.inplace > input').fill('absent');

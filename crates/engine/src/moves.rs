@@ -166,7 +166,7 @@ fn look(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut 
     if several || words > 1 { NONE } else { last }
 }
 
-/// As [`look`], where steps sleep. Where one token alone is left, sleep ends.
+/// As [`look`], while steps sleep. If only one step is active, the sleep of all ends.
 #[inline(never)]
 fn look_at_stirred(p: &Program, image: &[u64], steps: &Tree, found: &mut Found, rest: &mut Rest) -> u32 {
     let (mut several, mut last) = (false, NONE);

@@ -1,7 +1,8 @@
-//! Which instructions reach which words of the variable area, for `clocks.rs` and `times.rs`.
+//! Finds the instructions that read or write a word of the variable area, for `clocks.rs` and `times.rs`.
+//! An instruction *reaches* the words that it reads or writes.
 //!
-//! These ask it for each timer, and a large machine has hundreds of timers and thousands of instructions.
-//! So the code is looked through once.
+//! The two ask this for each timer, and a large machine has hundreds of timers and thousands of instructions.
+//! So the index is made in one pass over the code.
 
 use alloc::vec;
 use alloc::vec::Vec;
@@ -16,13 +17,14 @@ const NEAR: u32 = 16;
 
 /// An index of the words that are read and written.
 pub(crate) struct Reached {
-    /// The instructions that reach few words: the first of these, and their places. Ascending.
+    /// The instructions that reach few words: the first word and the place of the instruction, ascending.
     near: Vec<(u32, u32)>,
-    /// The longer ranges that instructions reach, whether they write, and the place of one that does.
+    /// The longer ranges that instructions reach: first word, length, true if the range is written, the place of one
+    /// such instruction.
     wide: Vec<(u32, u32, bool, u32)>,
     /// The words that are inputs, outputs or locals, or follow a step or a block, a bit each.
     tied: Vec<u64>,
-    /// The words that are receptivities by themselves, a bit each.
+    /// The words that some receptivity consists of, a bit each.
     guards: Vec<u64>,
 }
 
@@ -42,8 +44,8 @@ impl Reached {
         Reached { near, wide, tied: tied(t), guards: guards(t) }
     }
 
-    /// The places of the instructions that reach a word, and some that only reach words near it. Of those that
-    /// reach the same long range in the same way there is one.
+    /// The places of all instructions that may reach a word; the caller checks each. Of several that read the same long
+    /// range, or write it, only one is given.
     pub(crate) fn places(&self, word: u32) -> impl Iterator<Item = usize> + '_ {
         let from = self.near.partition_point(|(first, _)| first.saturating_add(NEAR) <= word);
         let near = self.near.get(from..).unwrap_or(&[]).iter().take_while(move |(first, _)| *first <= word);
@@ -57,13 +59,13 @@ impl Reached {
         bit(&self.tied, 0, word)
     }
 
-    /// True if a word is a receptivity by itself.
+    /// True if some receptivity is this word, or its complement, and nothing else.
     pub(crate) fn is_guard(&self, word: u32) -> bool {
         bit(&self.guards, 0, word)
     }
 }
 
-/// The first word that an instruction reaches, and how many it does.
+/// The words that an instruction reads or writes: the first of them, and their number.
 fn range(op: &Op) -> Option<(u32, u32)> {
     let first = match *op {
         Op::Load(a) => return Some((a.0, 1)),

@@ -157,13 +157,13 @@ impl Rest {
         }
     }
 
-    /// Lets all be awake.
+    /// Ends the sleep of all steps.
     pub(crate) fn end(&mut self) {
         self.on = false;
     }
 
-    /// Lets steps sleep from now on, where a pass has looked at so many words of 64 steps and has found so many steps
-    /// that do not wait.
+    /// Lets steps sleep from now on, if that pays. A pass has looked at `words` words of 64 steps; `found` of their active
+    /// steps do not wait.
     #[inline(always)]
     pub(crate) fn begin(&mut self, words: u32, found: usize) {
         if words >= MANY && found < words as usize {

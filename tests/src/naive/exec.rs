@@ -284,7 +284,7 @@ impl<'a> Exec<'a> {
         Ok(())
     }
 
-    /// A local variable of a type, with the value that it begins with.
+    /// A new local variable of this type, with its initial value.
     fn slot_of(&mut self, name: &Name, ty: &ValueType) -> Run<Slot> {
         let own = self.m.with_type(&VarDecl::of_type(VarKind::Var, vec![name.clone()], ty, name.at));
         let range = self.m.range(FILE, &own);

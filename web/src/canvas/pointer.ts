@@ -118,7 +118,7 @@ export class Pointer {
     if (this.#doing?.what !== 'press') return;
     this.#doing = null;
     this.#menu(e);
-    // As the finger leaves, some browsers press what is under it now: the menu.
+    // Some browsers send a click when the finger is lifted. It would press the menu, which now lies under the finger.
     const lost = (click: Event) => click.stopPropagation();
     window.addEventListener('click', lost, true);
     window.addEventListener('pointerdown', () => window.removeEventListener('click', lost, true), { capture: true, once: true });

@@ -136,8 +136,8 @@ impl Settler<'_> {
         }
     }
 
-    /// The type of a variable whose enumeration stays names that one, which is returned; of any other, it is that of the
-    /// numbers.
+    /// Gives a variable the enumeration as its type and returns the place of the enumeration, if that stays a type. If not,
+    /// the variable keeps the type of the numbers.
     fn of_type(
         &self,
         ty: &mut Type,
@@ -152,7 +152,7 @@ impl Settler<'_> {
         Some(place)
     }
 
-    /// True for the value that the variables of an enumeration begin with.
+    /// True if `e` is the value that variables of this enumeration have before anything is assigned.
     fn is_usual(&self, place: usize, e: &Expr) -> bool {
         let usual = self.table.all.get(place).map(|own| own.usual);
         self.value(place, e).is_some_and(|v| Some(v.number) == usual)

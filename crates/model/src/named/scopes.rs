@@ -68,7 +68,7 @@ impl<'d> Local<'d> {
 /// The parameters and the result of a function, by the values that they can have.
 #[derive(Clone, Debug)]
 pub(super) struct Signature<'d> {
-    /// Each parameter, and the values that it can have.
+    /// The name of each parameter, and the values that the parameter can have.
     params: Vec<(&'d str, Admits<'d>)>,
     pub(super) result: Admits<'d>,
 }

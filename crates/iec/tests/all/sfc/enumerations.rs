@@ -345,7 +345,7 @@ FUNCTION Next : Mode
   CASE m OF Off: Next := Auto; Auto: Next := last; ELSE Next := first; END_CASE;
 END_FUNCTION";
 
-/// Parameters, results and local variables of functions are of the type.
+/// Parameters, results and local variables of a function keep the enumeration as their type.
 #[test]
 fn functions_take_and_give_values() {
     let (found, problems) = import(&program(
