@@ -6,7 +6,7 @@ use g7_compile::resolve::{of_profile, with_switch};
 use g7_edit::ChartSort;
 use g7_ide::{File, OWN};
 use g7_model::instances::{Drawings, own_instances};
-use g7_model::{Document, Nanos, ProfileName, Switch};
+use g7_model::{Document, Nanos, PlantItem, ProfileName, Switch};
 use g7_rig::{Source, named};
 use serde::Serialize;
 
@@ -34,6 +34,8 @@ pub(crate) struct Overview {
     bound: Bound,
     scan_ms: f64,
     plants: Vec<String>,
+    /// The files of their pictures, as the text names them: relative to this file.
+    pictures: Vec<String>,
     tests: Vec<TestRow>,
     /// The names of the files that it uses, and that those use; also of files that are not there.
     uses: Vec<String>,
@@ -132,11 +134,17 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
         bound: bound(document),
         scan_ms: scan.unwrap_or(SCAN).as_millis(),
         plants: g7_compile::plant::plants(document).map(|p| p.name.text.to_string()).collect(),
+        pictures: pictures(document),
         tests: tests.collect(),
         uses: file.uses.iter().map(|path| named(name, path)).collect(),
         wants: file.wants().map(|path| named(name, path)).collect(),
         parts: parts.map(|o| o.path.clone()).collect(),
     }
+}
+
+fn pictures(document: &Document) -> Vec<String> {
+    let view = |item: &PlantItem| if let PlantItem::View(view) = item { Some(view.file.to_string()) } else { None };
+    g7_compile::plant::plants(document).flat_map(|p| &p.items).filter_map(view).collect()
 }
 
 #[inline(never)]

@@ -1,12 +1,15 @@
 // The start of the page: finds the server or the playground, opens the first file, restores unsaved
 // work.
 import { drafts } from '../lib/drafts.svelte';
+import { embedded } from '../lib/embedded';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { local } from '../lib/local';
 import { prefs } from '../lib/prefs.svelte';
 import { server, type Changed } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 import { runs } from '../lib/runs.svelte';
+import { carries } from '../share/links';
+import { openAddress } from '../share/parcels';
 import { back, lookAt, saveWaiting } from './back';
 import { recover } from './recover';
 
@@ -30,11 +33,16 @@ export async function begin(): Promise<void> {
     lost = !up;
   });
   local.hear(() => drafts.soon());
-  const wished = new URL(location.href).searchParams.get('file') ?? server.info?.start;
+  const start = carries(location.hash) ? undefined : server.info?.start;
+  const wished = new URL(location.href).searchParams.get('file') ?? start;
   if (wished) await shell.try(() => files.read(wished));
-  await recover();
+  // A frame belongs to no window: it has no unsaved work.
+  if (!embedded) await recover();
+  // Unsaved work may have the name of a file in the link; it comes first and stays.
+  await shell.try(openAddress);
   shell.ready = true;
-  await saveWaiting();
+  addEventListener('hashchange', () => void shell.try(openAddress));
+  if (!embedded) await saveWaiting();
 }
 
 /** A file of the folder has changed: takes the new text if nothing was changed here, otherwise
@@ -48,6 +56,7 @@ async function changedOutside({ path, hash }: Changed): Promise<void> {
 
 /** Keeps copies of unsaved work, one second after a change; call once, inside a component. */
 export function keepDrafts(): void {
+  if (embedded) return;
   const waiting = new Set<OpenFile>();
   $effect(() => {
     for (const file of files.list) {

@@ -31,10 +31,11 @@ addEventListener('pageshow', (event) => {
 
 /** The names of the windows of this browser that are there, apart from this one. */
 export async function others(): Promise<Set<string>> {
-  const held = (await navigator.locks?.query())?.held ?? [];
+  const held = (await navigator.locks?.query().catch(() => undefined))?.held ?? [];
   const names = held.map((lock) => lock.name ?? '').filter((name) => name.startsWith(`${KEY}:`));
   return new Set(names.map((name) => name.slice(KEY.length + 1)).filter((name) => name !== here));
 }
 
-// The lock ends with the page, however that ends. Browsers have none on pages that are not protected.
-void navigator.locks?.request(`${KEY}:${here}`, () => new Promise(() => undefined));
+// The lock ends with the page, however that ends. Browsers have none on pages that are not protected, and refuse them in
+// some frames.
+navigator.locks?.request(`${KEY}:${here}`, () => new Promise(() => undefined)).catch(() => undefined);

@@ -8,6 +8,7 @@ import { operator } from './words/operator';
 import { panels } from './words/panels';
 import { prove } from './words/prove';
 import { run } from './words/run';
+import { share } from './words/share';
 import { shell } from './words/shell';
 import { start } from './words/start';
 import { text } from './words/text';
@@ -17,7 +18,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...start, ...text, ...wiring, ...work } as const;
+const table = { ...access, ...shell, ...canvas, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...share, ...start, ...text, ...wiring, ...work } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

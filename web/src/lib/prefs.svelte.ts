@@ -1,4 +1,5 @@
 // The user's choices, which the browser remembers.
+import { embedded, wished } from './embedded';
 import type { Language } from './i18n';
 import { shape } from './shape.svelte';
 
@@ -23,6 +24,8 @@ interface Kept {
   /** The view follows the steps that become active. */
   follow: boolean;
   guided: boolean;
+  /** The address of the page that opens links; empty for this page. */
+  place: string;
 }
 
 const KEY = 'g7-prefs';
@@ -50,9 +53,24 @@ const first: Kept = {
   minimap: !shape.phone,
   follow: false,
   guided: false,
+  place: '',
 };
 
+/** In a frame there is little room, and its page chooses. */
+function framed(): Partial<Kept> {
+  return {
+    language: wished('lang', ['en', 'fr', 'pt']) ?? spoken(),
+    theme: wished('theme', ['auto', 'light', 'dark']) ?? 'auto',
+    view: wished('view', ['chart', 'both', 'text']) ?? 'chart',
+    look: wished('look', ['iec60848', 'sfc']) ?? 'iec60848',
+    leftOpen: false,
+    rightOpen: false,
+    minimap: false,
+  };
+}
+
 function stored(): Partial<Kept> {
+  if (embedded) return framed();
   try {
     return JSON.parse(localStorage.getItem(KEY) ?? '{}') as Partial<Kept>;
   } catch {
@@ -66,6 +84,7 @@ export const prefs: Kept = $state({ ...first, ...stored() });
 export function keepPrefs(): void {
   $effect(() => {
     const text = JSON.stringify(prefs);
+    if (embedded) return;
     try {
       localStorage.setItem(KEY, text);
     } catch {

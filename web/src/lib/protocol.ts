@@ -163,6 +163,8 @@ export type Edited = {
   bound: Bound;
   scan_ms: number;
   plants: Array<string>;
+  /** The files of their pictures, as the text names them: relative to this file. */
+  pictures: Array<string>;
   tests: Array<TestRow>;
   /** The names of the files that it uses, and that those use; also of files that are not there. */
   uses: Array<string>;
@@ -599,6 +601,8 @@ export type Look = {
   bound: Bound;
   scan_ms: number;
   plants: Array<string>;
+  /** The files of their pictures, as the text names them: relative to this file. */
+  pictures: Array<string>;
   tests: Array<TestRow>;
   /** The names of the files that it uses, and that those use; also of files that are not there. */
   uses: Array<string>;

@@ -80,11 +80,16 @@ function takeToken(): string {
   const here = new URL(location.href);
   const token = here.searchParams.get('token');
   if (token) {
-    sessionStorage.setItem(TOKEN, token);
     here.searchParams.delete('token');
     history.replaceState(null, '', here);
   }
-  return sessionStorage.getItem(TOKEN) ?? '';
+  try {
+    if (token) sessionStorage.setItem(TOKEN, token);
+    return sessionStorage.getItem(TOKEN) ?? '';
+  } catch {
+    // In a frame of another page there may be no storage.
+    return token ?? '';
+  }
 }
 
 class Server implements Door {

@@ -3,17 +3,6 @@ import { t } from '../lib/i18n';
 import { bind } from './bindings';
 import { picture } from './sanitize';
 
-/** The path of a file that lies beside another. */
-export function beside(file: string, name: string): string {
-  const parts = [...file.split('/').slice(0, -1), ...name.split('/')];
-  const kept: string[] = [];
-  for (const part of parts) {
-    if (part === '..') kept.pop();
-    else if (part !== '.' && part !== '') kept.push(part);
-  }
-  return kept.join('/');
-}
-
 export interface Bound {
   element: string;
   attribute: string;

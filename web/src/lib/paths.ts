@@ -1,0 +1,10 @@
+/** The path of a file that lies beside another. */
+export function beside(file: string, name: string): string {
+  const parts = [...file.split('/').slice(0, -1), ...name.split('/')];
+  const kept: string[] = [];
+  for (const part of parts) {
+    if (part === '..') kept.pop();
+    else if (part !== '.' && part !== '') kept.push(part);
+  }
+  return kept.join('/');
+}
