@@ -67,6 +67,7 @@ fn encoded(number: i128, digits: u32) -> i128 {
 
 impl Resolver<'_, '_> {
     /// A call of a conversion.
+    #[inline(never)]
     pub(super) fn call_bcd(
         &mut self,
         bcd: Bcd,

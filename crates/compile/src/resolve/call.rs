@@ -47,6 +47,7 @@ impl Resolver<'_, '_> {
         self.not_a_function(path)
     }
 
+    #[inline(never)]
     fn not_a_function<T>(&mut self, path: &Path) -> Option<T> {
         let text = path.text();
         let at = path.names.iter().map(|n| n.at.0).reduce(Span::to).unwrap_or_default();
@@ -79,6 +80,7 @@ impl Resolver<'_, '_> {
         self.report(problem)
     }
 
+    #[inline(never)]
     fn call_function(&mut self, f: FunctionId, name: &Name, args: &[Arg], at: Span) -> Option<Typed> {
         let names: Vec<String> =
             self.scopes.params.get(f.index()).into_iter().flatten().map(|n| (*n).to_owned()).collect();
@@ -167,6 +169,7 @@ impl Resolver<'_, '_> {
     }
 
     /// `DINT_TO_INT(n)`; TIME and TOD are converted in milliseconds, DATE and DT in seconds.
+    #[inline(never)]
     fn call_conversion(
         &mut self,
         from: Type,
@@ -209,6 +212,7 @@ impl Resolver<'_, '_> {
         }
     }
 
+    #[inline(never)]
     fn convert(&mut self, e: Expr, to: Type, at: Span) -> Option<Typed> {
         if e.ty == to {
             return Some(Typed { expr: Expr { at, ..e }, literal: false });

@@ -103,6 +103,7 @@ fn way(function: StandardFunction) -> Way {
 
 impl Resolver<'_, '_> {
     /// A call of a standard function.
+    #[inline(never)]
     pub(super) fn call_standard(
         &mut self,
         standard: StandardFunction,
