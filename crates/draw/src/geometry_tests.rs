@@ -233,7 +233,13 @@ fn what_lies_over_something_is_found() {
     let mut picture = Picture::default();
     picture.line("g7-link", &[(-9000, y), (right, y)]);
     let link = Item {
-        part: Part::Link { link: 0, from: End::Step(0), to: End::Transition(0) },
+        part: Part::Link {
+            link: 0,
+            from: End::Step(0),
+            to: End::Transition(0),
+            held: None,
+            bends: Bends::None,
+        },
         picture,
         area: through,
         at: Span::default(),
