@@ -174,6 +174,60 @@ test('a long press opens the menu of the symbol, and of the paper', async () => 
   await page.context().close();
 });
 
+test('a key presses in the menu that a long press has opened', async () => {
+  const hand = await telephone(b, site, 'cell/line.g7');
+  const { page } = hand;
+  const menu = page.getByRole('menu');
+  await hand.hold(await core(page, 'G1/s/1'), menu);
+  await menu.getByRole('menuitem', { name: 'Rename' }).focus();
+  await page.keyboard.press('Enter');
+  await field(hand).waitFor();
+  assert.equal(await field(hand).inputValue(), '1');
+  await page.context().close();
+});
+
+test('the buttons of a selected symbol cover no other symbol', async () => {
+  const hand = await telephone(b, site, 'cell/line.g7');
+  const { page } = hand;
+  await drawn(page);
+  for (const id of ['G1/s/0', 'G1/t/0', 'G1/s/1', 'G1/t/1', 'G1/s/2', 'G1/t/2']) {
+    await hand.choose(id);
+    const covered = () =>
+      page.evaluate((own) => {
+        const near = document.querySelector('.near')?.getBoundingClientRect();
+        if (!near) return ['no buttons'];
+        const symbols = [...document.querySelectorAll<HTMLElement>('.sheet [data-id]')].filter((e) => e.dataset.id !== own);
+        const cores = symbols.flatMap((e) => [...e.querySelectorAll('.g7-box, .g7-bar, .g7-action')].map((core) => [e.dataset.id, core.getBoundingClientRect()] as const));
+        return cores.filter(([, r]) => r.left < near.right && r.right > near.left && r.top < near.bottom && r.bottom > near.top).map(([other]) => other ?? '');
+      }, id);
+    // The buttons find their place when their size is known.
+    let found: string[] = [];
+    await until(async () => (found = await covered()).length === 0, `the buttons of ${id} cover no symbol`, 5_000).catch(() => assert.deepEqual(found, [], id));
+  }
+  await page.context().close();
+});
+
+for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
+  test(`the table of variables needs no sideways scroll, ${name}`, async () => {
+    const hand = await telephone(b, site, 'cell/line.g7', size);
+    const { page } = hand;
+    await hand.press('Panels');
+    await page.getByRole('tab', { name: 'Variables' }).tap();
+    await page.getByRole('textbox', { name: 'Name: go' }).waitFor();
+    const beyond = await page.locator('tbody :is(input, select, button)').evaluateAll((all) =>
+      all.filter((e) => e.getBoundingClientRect().right > innerWidth).map((e) => e.getAttribute('aria-label')),
+    );
+    assert.deepEqual(beyond, []);
+    // The name and the value stand in one line.
+    const [of, value] = await Promise.all(['Name: go', 'Initial value: go'].map((label) => box(page.getByRole('textbox', { name: label, exact: true }))));
+    assert.ok(Math.abs((of?.y ?? 0) - (value?.y ?? 1e3)) < 4);
+    await page.getByRole('textbox', { name: 'Comment: go' }).fill('the green button');
+    await page.getByRole('textbox', { name: 'Comment: go' }).press('Enter');
+    await until(async () => (await page.getByRole('textbox', { name: 'Comment: go' }).inputValue()) === 'the green button', 'a field of a card is edited');
+    await page.context().close();
+  });
+}
+
 test('the keyboard of the screen does not cover the field that is typed in', async () => {
   const hand = await telephone(b, site, 'cell/line.g7');
   const { page } = hand;

@@ -43,8 +43,9 @@ function held(item: Item | null): boolean {
 function loseClick(): void {
   const ended = new AbortController();
   const once = { capture: true, once: true, signal: ended.signal };
-  const lost = (click: Event) => {
-    click.stopPropagation();
+  const lost = (click: MouseEvent) => {
+    // A click of a key counts no presses.
+    if (click.detail > 0) click.stopPropagation();
     ended.abort();
   };
   window.addEventListener('click', lost, once);
