@@ -29,64 +29,47 @@ async function type(hand: Hand, text: string): Promise<void> {
   await field(hand).fill(text);
 }
 
-/** The controls that lie beyond the window, or are smaller than a finger needs. Tables and texts scroll with what is in them. */
-function unfit(hand: Hand): Promise<string[]> {
-  return hand.page.evaluate(() => {
-    const found: string[] = [];
-    for (const e of document.querySelectorAll<HTMLElement>('button, input, select, textarea, a[href], summary, [role=tab]')) {
-      if (!e.checkVisibility({ visibilityProperty: true }) || e.closest('.cm-editor, [aria-hidden=true]') || e.matches('.handle, .skip')) continue;
-      const own = e.getBoundingClientRect();
-      const label = e.closest('label')?.getBoundingClientRect() ?? own;
-      const name = e.getAttribute('aria-label') ?? e.textContent?.trim() ?? '';
-      const [wide, high] = [Math.max(own.width, label.width), Math.max(own.height, label.height)];
-      if (wide < 39.5 || high < 39.5) found.push(`${name} is ${Math.round(wide)} × ${Math.round(high)} px`);
-      if (!e.closest('table, .table, .palette') && (own.left < -0.5 || own.right > innerWidth + 0.5)) found.push(`${name} ends at ${Math.round(own.right)} px`);
-    }
-    return found;
-  });
-}
-
 for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
   test(`every command is in reach of a finger, ${name}`, async () => {
     const hand = await telephone(b, site, 'cell/line.g7', size);
     const { page } = hand;
-    assert.deepEqual(await unfit(hand), [], 'the drawing');
+    assert.deepEqual(await hand.unfit(), [], 'the drawing');
     assert.equal((await page.getByRole('tablist', { name: 'Open files' }).innerText()).trim(), 'line.g7', 'the name of the file is read');
     const name = await page.locator('[role=tablist] .name').evaluate((e) => e.scrollWidth <= e.clientWidth);
     assert.ok(name, 'and not cut off');
     await hand.choose('G1/s/1');
-    assert.deepEqual(await unfit(hand), [], 'a selected step');
+    assert.deepEqual(await hand.unfit(), [], 'a selected step');
     await hand.press('More of the run');
-    assert.deepEqual(await unfit(hand), [], 'the rest of the bar of the run');
+    assert.deepEqual(await hand.unfit(), [], 'the rest of the bar of the run');
     await hand.press('More of the run');
     await hand.press('Run');
     await hand.press('Operate');
     await page.getByRole('tab', { name: 'Operate', selected: true }).waitFor();
-    assert.deepEqual(await unfit(hand), [], 'operate');
+    assert.deepEqual(await hand.unfit(), [], 'operate');
     await hand.press('Panels');
     assert.equal(await page.getByRole('tab', { name: 'Operate' }).count(), 0, 'one sheet at a time is open');
     for (const panel of ['Problems', 'Variables', 'Inputs and outputs', 'Tests', 'Prove', 'Compare', 'Export', 'Chronogram']) {
       await page.getByRole('tab', { name: panel }).tap();
-      assert.deepEqual(await unfit(hand), [], panel);
+      assert.deepEqual(await hand.unfit(), [], panel);
     }
     await page.getByRole('region', { name: 'Bottom' }).getByRole('button', { name: 'Close', exact: true }).tap();
     assert.equal(await page.getByRole('tab', { name: 'Problems' }).count(), 0, 'a sheet closes');
     await hand.press('Files');
-    assert.deepEqual(await unfit(hand), [], 'files');
+    assert.deepEqual(await hand.unfit(), [], 'files');
     await hand.press('Text');
     await page.locator('.cm-content').waitFor();
-    assert.deepEqual(await unfit(hand), [], 'text');
+    assert.deepEqual(await hand.unfit(), [], 'text');
     for (const dialog of ['Settings', 'Keyboard shortcuts']) {
       await hand.press('More');
-      assert.deepEqual(await unfit(hand), [], 'the menu');
+      assert.deepEqual(await hand.unfit(), [], 'the menu');
       await hand.press(dialog);
       await page.getByRole('dialog', { name: dialog }).waitFor();
-      assert.deepEqual(await unfit(hand), [], dialog);
+      assert.deepEqual(await hand.unfit(), [], dialog);
       await page.getByRole('dialog', { name: dialog }).getByRole('button', { name: 'Close', exact: true }).tap();
     }
     await page.getByRole('button', { name: 'Gallery' }).tap();
     await page.getByRole('button', { name: /Blank chart/ }).waitFor();
-    assert.deepEqual(await unfit(hand), [], 'the gallery');
+    assert.deepEqual(await hand.unfit(), [], 'the gallery');
     await page.context().close();
   });
 }

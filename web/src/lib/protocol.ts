@@ -422,7 +422,7 @@ export type Gesture =
     /** The link. */
     link: ItemId;
     /** For each height at which it goes sideways, that height, and the place from which it goes on; in pixels,
-     *  from its start. Without any the link goes the way of the layout again. */
+     * from its start. Without any the link goes the way of the layout again. */
     points: Array<[number, number]>;
   }
   | {
