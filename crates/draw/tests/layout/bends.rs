@@ -94,7 +94,10 @@ fn the_part_along_a_double_line_stays() {
     let wrong = bent(Placed::TransitionNumber(0), step("3"), &[(0, low(&auto) - 50)]);
     let p = layout(chart, &sizes, &[moved, wrong]);
     assert_eq!(link(&p, End::Transition(0), End::Step(2)).bends, Bends::Waived);
-    assert_eq!(link(&p, End::Transition(0), End::Step(2)).points, link(&auto, End::Transition(0), End::Step(2)).points);
+    assert_eq!(
+        link(&p, End::Transition(0), End::Step(2)).points,
+        link(&auto, End::Transition(0), End::Step(2)).points
+    );
 }
 
 #[test]

@@ -123,8 +123,8 @@ fn settled(draft: &Draft<'_>, item: &Item) -> Option<Vec<PlaceAt>> {
         let fresh = is_fresh(p.at);
         let was = joined(then, &p.what);
         // Both ends take their new numbers, even where one is gone.
-        let all = p.what.symbols_mut().fold(true, |all, symbol| stays(symbol, fresh) && all);
-        all && (!was || joined(now, &p.what))
+        let gone = p.what.symbols_mut().map(|symbol| stays(symbol, fresh)).filter(|stays| !stays).count();
+        gone == 0 && (!was || joined(now, &p.what))
     });
     Some(places)
 }

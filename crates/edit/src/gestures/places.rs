@@ -186,7 +186,8 @@ fn shift_bends(
         for p in &mut layout.places {
             let Placed::Link(ends) = &p.what else { continue };
             if symbols.contains(&ends.0) && symbols.contains(&ends.1) {
-                let bends = std::iter::once((&mut p.x, &mut p.y)).chain(p.then.iter_mut().map(|b| (&mut b.0, &mut b.1)));
+                let bends = std::iter::once((&mut p.x, &mut p.y))
+                    .chain(p.then.iter_mut().map(|b| (&mut b.0, &mut b.1)));
                 for (x, y) in bends {
                     match (bounded(i64::from(*x) + i64::from(dx)), bounded(i64::from(*y) + i64::from(dy))) {
                         (Ok(right), Ok(down)) => (*x, *y) = (right, down),
