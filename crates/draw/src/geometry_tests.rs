@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use g7_model::{Document, FileId, Severity, Span};
 
 use crate::text::width;
-use crate::{Drawing, End, Item, Look, Options, Part, Picture, Rect, draw};
+use crate::{Bends, Drawing, End, Item, Look, Options, Part, Picture, Rect, draw};
 
 /// The boxes, texts and lines that an item covers.
 #[derive(Default)]
