@@ -49,7 +49,7 @@ impl Link {
     }
 }
 
-/// What a link does with the bends of the layout section.
+/// How a link takes the bends that the layout section gives it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Bends {
     /// There are none: it goes the way of the layout.

@@ -27,7 +27,7 @@ impl Layout {
 /// One entry of a layout section: a symbol and its place on the drawing, or a link and its bends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PlaceAt {
-    /// What stands there.
+    /// The part of the drawing.
     pub what: Placed,
     /// To the right, in hundredths of the drawing's unit.
     pub x: i32,
