@@ -449,21 +449,12 @@ module.exports = grammar({
     layout: ($) => seq(kw("layout"), field("chart", $._name), field("body", $.layout_body)),
     layout_body: ($) => seq("{", items($.place), "}"),
     place: ($) =>
-      seq(
-        choice(
-          seq(kw("step"), $._name),
-          seq(kw("transition"), choice($._name, seq("#", $.number))),
-          seq(kw("comment"), choice($.comment, $.string)),
-        ),
-        kw("at"),
-        "(",
-        optional("-"),
-        $.number,
-        ",",
-        optional("-"),
-        $.number,
-        ")",
+      choice(
+        seq(choice($._placed, seq(kw("comment"), choice($.comment, $.string))), kw("at"), $._point),
+        seq(kw("link"), $._placed, "->", $._placed, kw("at"), $._point, repeat(seq(",", $._point))),
       ),
+    _placed: ($) => choice(seq(kw("step"), $._name), seq(kw("transition"), choice($._name, seq("#", $.number)))),
+    _point: ($) => seq("(", optional("-"), $.number, ",", optional("-"), $.number, ")"),
 
     // Expressions
 

@@ -12,7 +12,7 @@ type Place = readonly [x: number, y: number];
 
 /** A page on a telephone, with the settings of its user; errors in it make the test fail at its end. */
 export async function telephone(b: Browser, site: Site, file?: string, size = UPRIGHT, prefs: object = {}): Promise<Hand> {
-  const context = await b.newContext({ viewport: size, hasTouch: true, isMobile: true, locale: 'en-GB' });
+  const context = await b.newContext({ viewport: size, hasTouch: true, isMobile: true, locale: 'en-GB', ignoreHTTPSErrors: true });
   const kept = JSON.stringify({ language: 'en', ...prefs });
   await context.addInitScript((text) => location.protocol === 'http:' && (localStorage.getItem('g7-prefs') ?? localStorage.setItem('g7-prefs', text)), kept);
   const page = await context.newPage();
@@ -77,6 +77,23 @@ export class Hand {
     await this.#touch('touchStart', at);
     await seen.waitFor();
     await this.#touch('touchEnd');
+  }
+
+  /** The controls that lie beyond the window, or are smaller than a finger needs. Tables and texts scroll with what is in them. */
+  unfit(): Promise<string[]> {
+    return this.page.evaluate(() => {
+      const found: string[] = [];
+      for (const e of document.querySelectorAll<HTMLElement>('button, input, select, textarea, a[href], summary, [role=tab]')) {
+        if (!e.checkVisibility({ visibilityProperty: true }) || e.closest('.cm-editor, [aria-hidden=true]') || e.matches('.handle, .skip')) continue;
+        const own = e.getBoundingClientRect();
+        const label = e.closest('label')?.getBoundingClientRect() ?? own;
+        const name = e.getAttribute('aria-label') ?? e.textContent?.trim() ?? '';
+        const [wide, high] = [Math.max(own.width, label.width), Math.max(own.height, label.height)];
+        if (wide < 39.5 || high < 39.5) found.push(`${name} is ${Math.round(wide)} × ${Math.round(high)} px`);
+        if (!e.closest('table, .table, .palette') && (own.left < -0.5 || own.right > innerWidth + 0.5)) found.push(`${name} ends at ${Math.round(own.right)} px`);
+      }
+      return found;
+    });
   }
 
   /** The middle of what is seen. */

@@ -2,7 +2,8 @@
 import assert from 'node:assert/strict';
 import { after, afterEach, before, beforeEach, test } from 'node:test';
 import type { Page } from 'playwright-core';
-import { axe, browser, open, speak, until } from './lib';
+import { LYING, telephone, UPRIGHT } from './finger';
+import { axe, box, browser, open, speak, until } from './lib';
 import { Machine } from './machine';
 
 let b: Awaited<ReturnType<typeof browser>>;
@@ -303,6 +304,24 @@ for (const [size, name] of [[DESK, 'a desktop'], [PHONE, 'a phone']] as const) {
       await page.context().close();
     });
   }
+}
+
+for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
+  test(`a finger reaches every command of a machine, ${name}`, async () => {
+    const hand = await telephone(b, { url: machine.url, stop: async () => undefined }, undefined, size);
+    const { page } = hand;
+    await mode(page, 'stop');
+    await row(page, 'stir').waitFor();
+    assert.deepEqual(await hand.unfit(), [], 'the page');
+    // The mode stays in sight, so it must leave room for the values.
+    const at = await box(page.locator('.mode'));
+    assert.ok(at.height < size.height * 0.3, `the mode has ${at.height} of ${size.height} px`);
+    await hand.press('Force stir');
+    const now = await box(page.getByRole('dialog').getByRole('button', { name: 'Force', exact: true }));
+    assert.ok(now.y + now.height <= size.height, `the last button ends at ${now.y + now.height} px`);
+    assert.deepEqual(await hand.unfit(), [], 'the dialog of a force');
+    await page.context().close();
+  });
 }
 
 test('everything is reached and done by the keyboard, in three languages', async () => {

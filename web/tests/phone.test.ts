@@ -29,64 +29,47 @@ async function type(hand: Hand, text: string): Promise<void> {
   await field(hand).fill(text);
 }
 
-/** The controls that lie beyond the window, or are smaller than a finger needs. Tables and texts scroll with what is in them. */
-function unfit(hand: Hand): Promise<string[]> {
-  return hand.page.evaluate(() => {
-    const found: string[] = [];
-    for (const e of document.querySelectorAll<HTMLElement>('button, input, select, textarea, a[href], summary, [role=tab]')) {
-      if (!e.checkVisibility({ visibilityProperty: true }) || e.closest('.cm-editor, [aria-hidden=true]') || e.matches('.handle, .skip')) continue;
-      const own = e.getBoundingClientRect();
-      const label = e.closest('label')?.getBoundingClientRect() ?? own;
-      const name = e.getAttribute('aria-label') ?? e.textContent?.trim() ?? '';
-      const [wide, high] = [Math.max(own.width, label.width), Math.max(own.height, label.height)];
-      if (wide < 39.5 || high < 39.5) found.push(`${name} is ${Math.round(wide)} × ${Math.round(high)} px`);
-      if (!e.closest('table, .table, .palette') && (own.left < -0.5 || own.right > innerWidth + 0.5)) found.push(`${name} ends at ${Math.round(own.right)} px`);
-    }
-    return found;
-  });
-}
-
 for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
   test(`every command is in reach of a finger, ${name}`, async () => {
     const hand = await telephone(b, site, 'cell/line.g7', size);
     const { page } = hand;
-    assert.deepEqual(await unfit(hand), [], 'the drawing');
+    assert.deepEqual(await hand.unfit(), [], 'the drawing');
     assert.equal((await page.getByRole('tablist', { name: 'Open files' }).innerText()).trim(), 'line.g7', 'the name of the file is read');
     const name = await page.locator('[role=tablist] .name').evaluate((e) => e.scrollWidth <= e.clientWidth);
     assert.ok(name, 'and not cut off');
     await hand.choose('G1/s/1');
-    assert.deepEqual(await unfit(hand), [], 'a selected step');
+    assert.deepEqual(await hand.unfit(), [], 'a selected step');
     await hand.press('More of the run');
-    assert.deepEqual(await unfit(hand), [], 'the rest of the bar of the run');
+    assert.deepEqual(await hand.unfit(), [], 'the rest of the bar of the run');
     await hand.press('More of the run');
     await hand.press('Run');
     await hand.press('Operate');
     await page.getByRole('tab', { name: 'Operate', selected: true }).waitFor();
-    assert.deepEqual(await unfit(hand), [], 'operate');
+    assert.deepEqual(await hand.unfit(), [], 'operate');
     await hand.press('Panels');
     assert.equal(await page.getByRole('tab', { name: 'Operate' }).count(), 0, 'one sheet at a time is open');
     for (const panel of ['Problems', 'Variables', 'Inputs and outputs', 'Tests', 'Prove', 'Compare', 'Export', 'Chronogram']) {
       await page.getByRole('tab', { name: panel }).tap();
-      assert.deepEqual(await unfit(hand), [], panel);
+      assert.deepEqual(await hand.unfit(), [], panel);
     }
     await page.getByRole('region', { name: 'Bottom' }).getByRole('button', { name: 'Close', exact: true }).tap();
     assert.equal(await page.getByRole('tab', { name: 'Problems' }).count(), 0, 'a sheet closes');
     await hand.press('Files');
-    assert.deepEqual(await unfit(hand), [], 'files');
+    assert.deepEqual(await hand.unfit(), [], 'files');
     await hand.press('Text');
     await page.locator('.cm-content').waitFor();
-    assert.deepEqual(await unfit(hand), [], 'text');
+    assert.deepEqual(await hand.unfit(), [], 'text');
     for (const dialog of ['Settings', 'Keyboard shortcuts']) {
       await hand.press('More');
-      assert.deepEqual(await unfit(hand), [], 'the menu');
+      assert.deepEqual(await hand.unfit(), [], 'the menu');
       await hand.press(dialog);
       await page.getByRole('dialog', { name: dialog }).waitFor();
-      assert.deepEqual(await unfit(hand), [], dialog);
+      assert.deepEqual(await hand.unfit(), [], dialog);
       await page.getByRole('dialog', { name: dialog }).getByRole('button', { name: 'Close', exact: true }).tap();
     }
     await page.getByRole('button', { name: 'Gallery' }).tap();
     await page.getByRole('button', { name: /Blank chart/ }).waitFor();
-    assert.deepEqual(await unfit(hand), [], 'the gallery');
+    assert.deepEqual(await hand.unfit(), [], 'the gallery');
     await page.context().close();
   });
 }
@@ -173,6 +156,60 @@ test('a long press opens the menu of the symbol, and of the paper', async () => 
   await until(async () => (await page.locator('.sheet [data-id^="G1/s/"]').count()) === 4, 'a new step');
   await page.context().close();
 });
+
+test('a key presses in the menu that a long press has opened', async () => {
+  const hand = await telephone(b, site, 'cell/line.g7');
+  const { page } = hand;
+  const menu = page.getByRole('menu');
+  await hand.hold(await core(page, 'G1/s/1'), menu);
+  await menu.getByRole('menuitem', { name: 'Rename' }).focus();
+  await page.keyboard.press('Enter');
+  await field(hand).waitFor();
+  assert.equal(await field(hand).inputValue(), '1');
+  await page.context().close();
+});
+
+test('the buttons of a selected symbol cover no other symbol', async () => {
+  const hand = await telephone(b, site, 'cell/line.g7');
+  const { page } = hand;
+  await drawn(page);
+  for (const id of ['G1/s/0', 'G1/t/0', 'G1/s/1', 'G1/t/1', 'G1/s/2', 'G1/t/2']) {
+    await hand.choose(id);
+    const covered = () =>
+      page.evaluate((own) => {
+        const near = document.querySelector('.near')?.getBoundingClientRect();
+        if (!near) return ['no buttons'];
+        const symbols = [...document.querySelectorAll<HTMLElement>('.sheet [data-id]')].filter((e) => e.dataset.id !== own);
+        const cores = symbols.flatMap((e) => [...e.querySelectorAll('.g7-box, .g7-bar, .g7-action')].map((core) => [e.dataset.id, core.getBoundingClientRect()] as const));
+        return cores.filter(([, r]) => r.left < near.right && r.right > near.left && r.top < near.bottom && r.bottom > near.top).map(([other]) => other ?? '');
+      }, id);
+    // The buttons find their place when their size is known.
+    let found: string[] = [];
+    await until(async () => (found = await covered()).length === 0, `the buttons of ${id} cover no symbol`, 5_000).catch(() => assert.deepEqual(found, [], id));
+  }
+  await page.context().close();
+});
+
+for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
+  test(`the table of variables needs no sideways scroll, ${name}`, async () => {
+    const hand = await telephone(b, site, 'cell/line.g7', size);
+    const { page } = hand;
+    await hand.press('Panels');
+    await page.getByRole('tab', { name: 'Variables' }).tap();
+    await page.getByRole('textbox', { name: 'Name: go' }).waitFor();
+    const beyond = await page.locator('tbody :is(input, select, button)').evaluateAll((all) =>
+      all.filter((e) => e.getBoundingClientRect().right > innerWidth).map((e) => e.getAttribute('aria-label')),
+    );
+    assert.deepEqual(beyond, []);
+    // The name and the value stand in one line.
+    const [of, value] = await Promise.all(['Name: go', 'Initial value: go'].map((label) => box(page.getByRole('textbox', { name: label, exact: true }))));
+    assert.ok(Math.abs((of?.y ?? 0) - (value?.y ?? 1e3)) < 4);
+    await page.getByRole('textbox', { name: 'Comment: go' }).fill('the green button');
+    await page.getByRole('textbox', { name: 'Comment: go' }).press('Enter');
+    await until(async () => (await page.getByRole('textbox', { name: 'Comment: go' }).inputValue()) === 'the green button', 'a field of a card is edited');
+    await page.context().close();
+  });
+}
 
 test('the keyboard of the screen does not cover the field that is typed in', async () => {
   const hand = await telephone(b, site, 'cell/line.g7');

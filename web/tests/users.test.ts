@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
+import { LYING, telephone, UPRIGHT } from './finger';
 import { axe, browser, open, speak } from './lib';
 import { Machine } from './machine';
 
@@ -135,3 +136,33 @@ test('users come in by role, see what they lack, and are put out', async () => {
   await ana.getByRole('heading', { name: 'Log in' }).waitFor();
   await Promise.all([ana, vi].map((page) => page.context().close()));
 });
+
+for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
+  test(`a finger logs in, and reaches users and log, ${name}`, async () => {
+    const own = await Machine.guarded();
+    try {
+      const at = { url: own.machine.url, stop: async () => undefined };
+      const hand = await telephone(b, at, undefined, size);
+      const { page } = hand;
+      await page.getByRole('heading', { name: 'The first admin' }).waitFor();
+      assert.deepEqual(await hand.unfit(), [], 'the first admin');
+      for (const [label, text] of [['Code', own.code], ['Name', 'ana'], ['New password', PASSWORD], ['The password once more', PASSWORD]] as const) await page.getByLabel(label, { exact: label === 'Name' }).fill(text);
+      await hand.press('Become the first admin');
+      await page.locator('.mode.stop').waitFor();
+      assert.deepEqual(await hand.unfit(), [], 'an admin');
+      for (const dialog of ['Users', 'Log']) {
+        await hand.press(dialog);
+        await page.getByRole('dialog', { name: dialog }).waitFor();
+        assert.deepEqual(await hand.unfit(), [], dialog);
+        await hand.press('Close');
+      }
+      await page.context().close();
+      const next = await telephone(b, at, undefined, size);
+      await next.page.getByRole('heading', { name: 'Log in' }).waitFor();
+      assert.deepEqual(await next.unfit(), [], 'the login');
+      await next.page.context().close();
+    } finally {
+      await own.machine.done();
+    }
+  });
+}

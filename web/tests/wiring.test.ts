@@ -2,6 +2,7 @@
 import assert from 'node:assert/strict';
 import { after, before, test } from 'node:test';
 import type { Page } from 'playwright-core';
+import { LYING, telephone, UPRIGHT } from './finger';
 import { axe, browser, open, until } from './lib';
 import { Machine } from './machine';
 
@@ -106,6 +107,26 @@ test('a device is added and removed, also on a phone', async () => {
     await machine.done();
   }
 });
+
+for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
+  test(`a finger wires a signal, ${name}`, async () => {
+    const machine = await Machine.editor();
+    try {
+      const hand = await telephone(b, { url: machine.url, stop: async () => undefined }, undefined, size);
+      const { page } = hand;
+      await hand.press('More');
+      await hand.press('Wiring');
+      await row(page, 'rack1').waitFor();
+      assert.deepEqual(await hand.unfit(), [], 'the rows');
+      await row(page, 'speed').getByRole('button', { name: 'Change speed' }).tap();
+      await page.getByRole('form', { name: 'Wire speed' }).waitFor();
+      assert.deepEqual(await hand.unfit(), [], 'the form of a signal');
+      await page.context().close();
+    } finally {
+      await machine.done();
+    }
+  });
+}
 
 test('a panel is operated, and a button is let go when its page dies', async () => {
   const machine = await Machine.desk();

@@ -89,7 +89,7 @@ pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item
 fn comments_of(places: &[PlaceAt]) -> impl Iterator<Item = (&str, &PlaceAt)> {
     places.iter().filter_map(|p| match &p.what {
         Placed::Comment(text) => Some((&**text, p)),
-        Placed::Step(_) | Placed::Transition(_) | Placed::TransitionNumber(_) => None,
+        Placed::Step(_) | Placed::Transition(_) | Placed::TransitionNumber(_) | Placed::Link(_) => None,
     })
 }
 
@@ -196,7 +196,8 @@ impl<'a> Symbols<'a> {
             let points: Vec<(i32, i32)> = l.points.iter().map(|p| (p.x, p.y)).collect();
             picture.line("g7-link", &points);
             l.arrows.iter().for_each(|(tip, way)| arrow(&mut picture, *tip, *way));
-            items.push(item(Part::Link { link: index, from: l.from, to: l.to }, picture, self.span(l.from)));
+            let (from, to, held, bends) = (l.from, l.to, l.held, l.bends);
+            items.push(item(Part::Link { link: index, from, to, held, bends }, picture, self.span(from)));
         }
     }
 

@@ -5,7 +5,7 @@
 
 use g7_model::Span;
 
-use crate::{End, Picture, Point, Rect};
+use crate::{Bends, End, Picture, Point, Rect};
 
 /// The drawing of one chart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -66,6 +66,10 @@ pub enum Part {
         from: End,
         /// The end at which the link arrives.
         to: End,
+        /// How many segments at its start and at its end no bend moves; `None` if none can be moved.
+        held: Option<[usize; 2]>,
+        /// The bends that the layout section gives it.
+        bends: Bends,
     },
     /// One end of a link that is not drawn in full, with the name of its other end.
     Connector {

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 use g7_model::{Document, FileId, Severity, Span};
 
 use crate::text::width;
-use crate::{Drawing, End, Item, Look, Options, Part, Picture, Rect, draw};
+use crate::{Bends, Drawing, End, Item, Look, Options, Part, Picture, Rect, draw};
 
 /// The boxes, texts and lines that an item covers.
 #[derive(Default)]
@@ -233,7 +233,13 @@ fn what_lies_over_something_is_found() {
     let mut picture = Picture::default();
     picture.line("g7-link", &[(-9000, y), (right, y)]);
     let link = Item {
-        part: Part::Link { link: 0, from: End::Step(0), to: End::Transition(0) },
+        part: Part::Link {
+            link: 0,
+            from: End::Step(0),
+            to: End::Transition(0),
+            held: None,
+            bends: Bends::None,
+        },
         picture,
         area: through,
         at: Span::default(),

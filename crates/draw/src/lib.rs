@@ -39,7 +39,7 @@ pub use geometry::{Extent, Point, Rect, U};
 pub use ink::Picture;
 pub use layout::layout;
 pub use options::{Look, Options};
-pub use placement::{Bar, Connector, End, Link, Placement, Sizes};
+pub use placement::{Bar, Bends, Connector, End, Link, Placement, Sizes};
 pub use room::make_room;
 pub use rungs::{Element, Rung, rungs, rungs_svg};
 pub use svg::{sheet, style, svg};

@@ -35,6 +35,30 @@ pub struct Link {
     /// Points at which an arrow is needed, with the direction (dx, dy) of the arrow: links that run
     /// upward need one (IEC 60848, directed links).
     pub arrows: Vec<(Point, (i8, i8))>,
+    /// How many segments at its start and at its end no bend moves; `None` if those between cannot be moved or there
+    /// are none.
+    pub held: Option<[usize; 2]>,
+    /// The bends that the layout section gives it.
+    pub bends: Bends,
+}
+
+impl Link {
+    /// A link whose way is that of the layout.
+    pub(crate) fn new(from: End, to: End, points: Vec<Point>, arrows: Vec<(Point, (i8, i8))>) -> Link {
+        Link { from, to, points, arrows, held: None, bends: Bends::None }
+    }
+}
+
+/// How a link takes the bends that the layout section gives it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Bends {
+    /// There are none: it goes the way of the layout.
+    #[default]
+    None,
+    /// It follows them.
+    Followed,
+    /// They do not fit at present, so it goes the way of the layout.
+    Waived,
 }
 
 /// A double line (IEC 60848, synchronisation) above or below a transition.

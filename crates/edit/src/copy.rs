@@ -69,7 +69,7 @@ pub fn copy_placed(source: &Source<'_>, ids: &[ItemId], anchors: Anchors<'_>) ->
 }
 
 fn placed(what: Placed, at: Option<(i32, i32)>) -> Option<PlaceAt> {
-    at.map(|(x, y)| PlaceAt { what, x, y, at: Span::default().into() })
+    at.map(|(x, y)| PlaceAt { what, x, y, then: Vec::new(), at: Span::default().into() })
 }
 
 /// The chosen parts of one chart.

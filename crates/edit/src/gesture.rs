@@ -193,6 +193,14 @@ pub enum Gesture {
         /// The kind of alignment.
         how: Alignment,
     },
+    /// Gives a link bends of its own.
+    Bend {
+        /// The link.
+        link: ItemId,
+        /// For each height at which it goes sideways, that height, and the place from which it goes on; in pixels,
+        /// from its start. Without any the link goes the way of the layout again.
+        points: Vec<[f64; 2]>,
+    },
     /// Returns to the automatic layout.
     Tidy {
         /// The chart.

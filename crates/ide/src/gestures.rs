@@ -4,8 +4,8 @@
 use std::cell::RefCell;
 use std::collections::HashMap;
 
-use g7_draw::Options;
-use g7_edit::{Edit, Gesture, ItemId, Joined, spliced};
+use g7_draw::{Bends, Options};
+use g7_edit::{Edit, Gesture, ItemId, Joined, Part, spliced};
 use g7_model::{Document, Said, Span, say};
 use g7_rig::Source;
 
@@ -16,7 +16,30 @@ use crate::undeclared::{Undeclared, undeclared};
 /// The change that a gesture would make.
 pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
     let stand = standing(&file.source.document);
-    Ok(g7_edit::apply_placed(&file.as_edited(), gesture, &stand)?)
+    let edit = g7_edit::apply_placed(&file.as_edited(), gesture, &stand)?;
+    match gesture {
+        Gesture::Bend { link, points } if !points.is_empty() => fits(file, &edit, link)?,
+        _ => {}
+    }
+    Ok(edit)
+}
+
+/// Refuses bends that the drawing would not follow.
+fn fits(file: &File, edit: &Edit, link: &ItemId) -> Result<(), Said> {
+    let document = after(file, edit)?.document;
+    let chart = document.charts().find(|c| *c.name.text == *link.chart);
+    let followed = chart.is_some_and(|chart| {
+        let end = |end: g7_draw::End| match end {
+            g7_draw::End::Step(n) => {
+                g7_edit::End::Step(chart.steps().nth(n as usize).map_or("", |s| &s.name.text).to_owned())
+            }
+            g7_draw::End::Transition(n) => g7_edit::End::Transition(n as usize),
+        };
+        let links = g7_draw::placed(&document, chart, &Options::default()).links;
+        let found = links.into_iter().find(|l| Part::Link(end(l.from), end(l.to)) == link.part);
+        found.is_some_and(|l| l.bends == Bends::Followed)
+    });
+    if followed { Ok(()) } else { Err(say!("the link has no room there")) }
 }
 
 /// The steps that a deletion would join if it heals.
@@ -36,14 +59,19 @@ pub struct After {
 /// The effect of a gesture; the file stays as it is.
 pub fn foresee(file: &File, gesture: &Gesture) -> Result<After, Said> {
     let edit = draft(file, gesture)?;
-    let text = spliced(file.text(), &edit.splices).ok_or_else(|| say!("the change does not fit the text"))?;
-    let source = Source::native(&file.source.name, text.into_bytes(), OWN.0).linked_like(&file.source);
+    let source = after(file, &edit)?;
     let problems = g7_rig::testing::problems(&source, None).unwrap_or_default();
     let selected: Vec<String> = edit.select.iter().map(ItemId::to_string).collect();
     let mut undeclared = undeclared(&source.text, &source.document, &problems);
     let here = |at: &Span| ids::at(&source.document, *at).is_some_and(|t| selected.contains(&t.id()));
     undeclared.retain(|u| u.uses.iter().any(here));
     Ok(After { document: source.document, undeclared })
+}
+
+/// The file with a change.
+fn after(file: &File, edit: &Edit) -> Result<Source, Said> {
+    let text = spliced(file.text(), &edit.splices).ok_or_else(|| say!("the change does not fit the text"))?;
+    Ok(Source::native(&file.source.name, text.into_bytes(), OWN.0).linked_like(&file.source))
 }
 
 /// A part of a chart as text, with the places of its symbols.

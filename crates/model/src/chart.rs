@@ -2,8 +2,8 @@
 
 use crate::words::Told;
 use crate::{
-    Action, Arg, Block, Body, Expr, Limits, Name, Nanos, Param, Place, Plant, Property, Scenario, Span, Type,
-    Use, ValueType,
+    Action, Arg, Block, Body, Expr, Layout, Limits, Name, Nanos, Param, Place, Plant, Property, Scenario,
+    Span, Type, Use, ValueType,
 };
 
 /// All of one file.
@@ -472,50 +472,6 @@ pub struct Composed {
     pub body: Option<Body>,
     /// Where it stands.
     pub at: Place,
-}
-
-/// `layout Conveyor { … }`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Layout {
-    /// The chart.
-    pub chart: Name,
-    /// The places.
-    pub places: Vec<PlaceAt>,
-    /// Where it stands.
-    pub at: Place,
-}
-
-impl Layout {
-    /// True if a chart counts as drawn by hand: more than half of its steps and transitions have a place.
-    pub fn is_by_hand(placed: usize, symbols: usize) -> bool {
-        placed * 2 > symbols
-    }
-}
-
-/// One symbol's place on the drawing.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct PlaceAt {
-    /// The symbol.
-    pub what: Placed,
-    /// To the right, in hundredths of the drawing's unit.
-    pub x: i32,
-    /// Downward, in hundredths of the drawing's unit.
-    pub y: i32,
-    /// Where it stands.
-    pub at: Place,
-}
-
-/// The element that a layout places.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Placed {
-    /// A step by name.
-    Step(Name),
-    /// A transition by label.
-    Transition(Name),
-    /// A transition by its place in the text of the chart, from 0.
-    TransitionNumber(u32),
-    /// A comment by its text.
-    Comment(Box<str>),
 }
 
 impl Document {

@@ -31,6 +31,7 @@ mod fix;
 mod functions;
 pub mod instances;
 mod language;
+mod layout;
 mod limits;
 pub mod linked;
 mod moments;
@@ -58,15 +59,16 @@ pub use action::{
     Action, ActionKind, Block, Body, BodyLang, CaseArm, Local, Order, Situation, Stmt, StmtKind, Target, Work,
 };
 pub use chart::{
-    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item, Layout,
-    NamedAction, Note, PlaceAt, Placed, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc,
-    Transition, VarDecl, VarKind,
+    Array, Chart, ChartItem, ChartKind, Composed, Document, Function, Instance, InstanceNames, Item,
+    NamedAction, Note, Profile, ProfileName, Section, Step, StepKind, Switch, TargetPlc, Transition, VarDecl,
+    VarKind,
 };
 pub use expr::{Arg, Expr, ExprKind, Literal, Path, element_name, element_parts, filled};
 pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;
 pub use language::Language;
+pub use layout::{Layout, PlaceAt, Placed};
 pub use limits::Limits;
 pub use moments::Moment;
 pub use name::{Index, Name, bare, chart_in, instance_of, normal_address, slot_of, with_slot};

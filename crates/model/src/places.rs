@@ -129,7 +129,7 @@ structs! {
     Param { name, ty }
     Parts { name, attributes, max, length, init, at }
     Path { names }
-    PlaceAt { what, x, y, at }
+    PlaceAt { what, x, y, then, at }
     Plant { name, comment, items, at }
     Profile { name, switches, at }
     Property { kind, plant, comment, at }
@@ -181,7 +181,7 @@ enums! {
     Limits { Range(least, most), Values(values), Of(name) }
     Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Moment(moment, time), Str(text) }
     Order { Force(name, situation), Enable(name), Mask(name), Call(name), Enclose(name) }
-    Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text) }
+    Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text), Link(ends) }
     PlantItem {
         Const { names, ty, value, comment, at },
         State(part), Rate(part), Drive(part), On(event, block, at), Each(block, at), Parts(part),

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use g7_draw::{End, Look, Options, Picture, Point, Rect};
+use g7_draw::{Bends, End, Look, Options, Picture, Point, Rect};
 use g7_edit::{ChartSort, ItemId, Sort};
 use g7_ide::ids;
 use g7_ide::{File, Positions, Readable};
@@ -150,6 +150,12 @@ pub(crate) struct Item {
     initial: bool,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub(crate) ends: Option<[String; 2]>,
+    /// How many segments at the start and at the end of a link no bend moves; absent if none can be moved.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    held: Option<[usize; 2]>,
+    /// The bends that the text gives a link: true if it follows them, false if they do not fit at present.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bent: Option<bool>,
 }
 
 impl Item {
@@ -160,11 +166,12 @@ impl Item {
         // `picture` is compared last, because it is long.
         let Item { id: _, part, area: _, picture, from: _, to: _, square, bar, text, at, .. } = self;
         let Item { name, label, comment, source, priority, steps, .. } = self;
-        let Item { step, expansion, encloses, initial, ends, .. } = self;
+        let Item { step, expansion, encloses, initial, ends, held, bent, .. } = self;
         let same = (part, name, label, comment) == (&old.part, &old.name, &old.label, &old.comment)
             && (source, priority, steps) == (&old.source, &old.priority, &old.steps)
             && (step, expansion, encloses, initial)
                 == (&old.step, &old.expansion, &old.encloses, &old.initial)
+            && (held, bent) == (&old.held, &old.bent)
             && same_ends(ends.as_ref(), old.ends.as_ref());
         let by = if same { picture.moved_from(&old.picture) } else { None }?;
         let boxes = [(*square, old.square), (*bar, old.bar), (*text, old.text)];
@@ -292,9 +299,15 @@ impl<'a> Names<'a> {
             g7_draw::Part::Transition { transition, bar, text } => {
                 self.transition(transition, bar, text, base)
             }
-            g7_draw::Part::Link { from, to, .. } => {
+            g7_draw::Part::Link { from, to, held, bends, .. } => {
                 let id = ItemId::link(chart, self.end(from), self.end(to)).to_string();
-                Item { id, part: Part::Link, ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+                let bent = match bends {
+                    Bends::None => None,
+                    Bends::Followed => Some(true),
+                    Bends::Waived => Some(false),
+                };
+                let ends = Some([self.end_id(from), self.end_id(to)]);
+                Item { id, part: Part::Link, ends, held, bent, ..base }
             }
             g7_draw::Part::Connector { from, to, leaving, .. } => {
                 let id = ItemId::connector(chart, self.end(from), self.end(to), leaving).to_string();

@@ -43,13 +43,13 @@
   "each" "else" "elsif" "enable" "enclose" "enclosing" "end_case" "end_for"
   "end_if" "end_repeat" "end_while" "entry" "every" "exit" "expect" "fault"
   "for" "force" "function" "if" "il" "in" "initial" "input"
-  "instance" "inverted" "layout" "ld" "leads" "length" "macro" "macrochart"
-  "mask" "max" "most" "never" "of" "on" "output" "parts"
-  "plant" "post" "pre" "priority" "profile" "prove" "pulse" "rate"
-  "reachable" "release" "repeat" "restart" "retain" "return" "safe" "scan"
-  "section" "seed" "set" "st" "state" "step" "struct" "target"
-  "task" "test" "then" "to" "transition" "type" "until" "use"
-  "var" "view" "wait" "when" "while" "with" "within"
+  "instance" "inverted" "layout" "ld" "leads" "length" "link" "macro"
+  "macrochart" "mask" "max" "most" "never" "of" "on" "output"
+  "parts" "plant" "post" "pre" "priority" "profile" "prove" "pulse"
+  "rate" "reachable" "release" "repeat" "restart" "retain" "return" "safe"
+  "scan" "section" "seed" "set" "st" "state" "step" "struct"
+  "target" "task" "test" "then" "to" "transition" "type" "until"
+  "use" "var" "view" "wait" "when" "while" "with" "within"
 ] @keyword
 
 [

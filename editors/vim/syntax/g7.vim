@@ -30,7 +30,7 @@ syntax match g7Function /\<\%(ABS\|ACOS\|ADD\|AND\|ASIN\|ATAN\|CONCAT\|CONCAT_DA
 syntax match g7Clause /\%(\S\s\+\)\@40<=\<\%(INIT\|after\|always\|at\|between\|block\|bound\|clearing\|cold\|every\|expect\|fault\|il\|in\|inverted\|ld\|leads\|length\|max\|most\|never\|on\|reachable\|retain\|safe\|scan\|section\|seed\|st\|with\|within\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
 syntax match g7Clause /\%(\%(pre\|post\|each\)\s\+\)\@20<=\%(st\|il\|ld\|scan\)\>/
 syntax match g7Qualifier /\<\%(DS\|P0\|P1\|SD\|SL\|D\|L\|N\|P\|R\|S\)\>\ze\s\+[A-Za-z0-9_`%({]/
-syntax match g7Statement /\%(\%(^\|[{};]\)\s*\)\@80<=\<\%(always\|arrivals\|assume\|call\|comment\|drive\|each\|enable\|enclose\|entry\|expect\|force\|instance\|mask\|on\|parts\|post\|pre\|pulse\|rate\|release\|restart\|scan\|set\|state\|struct\|target\|test\|type\|use\|view\|wait\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
+syntax match g7Statement /\%(\%(^\|[{};]\)\s*\)\@80<=\<\%(always\|arrivals\|assume\|call\|comment\|drive\|each\|enable\|enclose\|entry\|expect\|force\|instance\|link\|mask\|on\|parts\|post\|pre\|pulse\|rate\|release\|restart\|scan\|set\|state\|struct\|target\|test\|type\|use\|view\|wait\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
 
 syntax match g7Operator /:=\|=>\|<>\|<=\|>=\|!=\|==\|\*\*\|[=<>≠≤≥+*&·!↑↓^]\|\/\%([\/*]\)\@!/
 syntax match g7Arrow /->\|→/

@@ -124,6 +124,21 @@ export const commands: Command[] = [
     run: () => editor.declare(editor.undeclared),
   },
   {
+    id: 'straighten',
+    title: 'cmd.straighten',
+    near: true,
+    icon: 'undo',
+    when: () => editor.one?.part === 'link' && editor.one.bent !== undefined,
+    run: () => editor.straighten(),
+  },
+  {
+    id: 'nextLink',
+    title: 'cmd.nextLink',
+    keys: ['L'],
+    when: () => step() || transition() || one('link'),
+    run: () => editor.nextLink(),
+  },
+  {
     id: 'jump',
     title: 'cmd.jump',
     keys: ['J'],

@@ -9,7 +9,7 @@ import type { Box, Edited, Gesture, Undeclared } from '../lib/protocol';
 import type { Placed as Item } from '../lib/redrawn';
 import { choices, drawnFor } from '../lib/instances.svelte';
 import { shell } from '../lib/shell.svelte';
-import { Scene } from './scene';
+import { Scene, type Point } from './scene';
 
 export type Field = 'name' | 'receptivity' | 'action' | 'comment' | 'label' | 'priority';
 
@@ -71,6 +71,8 @@ class Editor {
   moving: { ids: ReadonlySet<string>; dx: number; dy: number } | null = $state.raw(null);
   /** A link that is being drawn: from this symbol, or to it, to or from a place of the plane. */
   linking: { from: string; x: number; y: number; back?: boolean } | null = $state.raw(null);
+  /** The corners of the selected link while one of its segments is dragged. */
+  bending: Point[] | null = $state.raw(null);
   /** The dragged tool, with its place on the screen. */
   tool: { what: Tool; x: number; y: number } | null = $state.raw(null);
   /** A text that screen readers read out. */
@@ -269,6 +271,21 @@ class Editor {
 
   remove(heal = true): Promise<Edited | undefined> {
     return this.apply({ g: 'delete', ids: [...shell.selection], heal });
+  }
+
+  /** Gives the way of the selected link back to the layout. */
+  async straighten(): Promise<void> {
+    const { one } = this;
+    if (one?.part === 'link' && one.bent !== undefined) await this.apply({ g: 'bend', link: one.id, points: [] });
+  }
+
+  /** Selects a link: the first of the selected symbol, or the next one in the chart. */
+  nextLink(): void {
+    const { one, scene } = this;
+    const links = scene?.items.filter((i) => i.part === 'link') ?? [];
+    const first = links.find((l) => one && one.part !== 'link' && l.ends?.includes(one.id));
+    const next = first ?? links[(links.findIndex((l) => l.id === one?.id) + 1) % links.length];
+    if (next) this.goTo(next.id);
   }
 
   selectAll(): void {

@@ -4,13 +4,17 @@ import type { Placed as Item } from '../lib/redrawn';
 import { actionOf } from '../lib/ids';
 import type { LinkEnd } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
+import { bendsOf, moved, type Segment } from './bends';
 import { editor } from './editor.svelte';
+import type { Point } from './scene';
 
 /** Movements smaller than this are clicks, in px; a finger is less steady than a mouse. */
 const CLICK = 4;
 const TAP = 10;
 /** A finger that stays so long opens the menu, in ms. */
 const LONG = 500;
+/** So long after the finger is lifted its click may come, in ms. */
+const LIFTED = 100;
 /** Two taps within this time, in ms, and this distance, in px, are one double tap. */
 const TWICE = 400;
 const NEAR = 30;
@@ -26,11 +30,27 @@ type Doing =
   | { what: 'move'; ids: Set<string> }
   | { what: 'mark'; item: Item | null; add: boolean }
   | { what: 'link'; from: string }
-  | { what: 'relink'; link: string; end: LinkEnd; part: Item['part'] };
+  | { what: 'relink'; link: string; end: LinkEnd; part: Item['part'] }
+  | { what: 'bend'; link: Item; line: Point[]; segment: Segment };
 
 /** True if a symbol can be dragged; links only follow their symbols. */
 function held(item: Item | null): boolean {
   return item !== null && ['step', 'transition', 'action', 'comment'].includes(item.part);
+}
+
+/** Keeps the click away that some browsers send when the finger is lifted: it would press the menu, which now lies under
+ * the finger. It ends with that click or shortly after the finger, because the next one may come from a key. */
+function loseClick(): void {
+  const ended = new AbortController();
+  const once = { capture: true, once: true, signal: ended.signal };
+  const lost = (click: MouseEvent) => {
+    // A click of a key counts no presses.
+    if (click.detail > 0) click.stopPropagation();
+    ended.abort();
+  };
+  window.addEventListener('click', lost, once);
+  window.addEventListener('pointerdown', () => ended.abort(), once);
+  for (const end of ['pointerup', 'pointercancel']) window.addEventListener(end, () => setTimeout(() => ended.abort(), LIFTED), once);
 }
 
 export class Pointer {
@@ -118,10 +138,7 @@ export class Pointer {
     if (this.#doing?.what !== 'press') return;
     this.#doing = null;
     this.#menu(e);
-    // Some browsers send a click when the finger is lifted. It would press the menu, which now lies under the finger.
-    const lost = (click: Event) => click.stopPropagation();
-    window.addEventListener('click', lost, true);
-    window.addEventListener('pointerdown', () => window.removeEventListener('click', lost, true), { capture: true, once: true });
+    loseClick();
   }
 
   #press(e: PointerEvent): void {
@@ -148,6 +165,15 @@ export class Pointer {
     this.#doing = { what: 'relink', link: link.id, end, part };
     const [x, y] = this.#from;
     editor.linking = { from: other, x, y, back: end === 'from' };
+    this.#root.setPointerCapture(e.pointerId);
+  }
+
+  /** Takes a segment of a link. */
+  bend(e: PointerEvent, link: Item, segment: Segment): void {
+    const line = editor.scene?.line(link);
+    if (!line) return;
+    this.#press(e);
+    this.#doing = { what: 'bend', link, line, segment };
     this.#root.setPointerCapture(e.pointerId);
   }
 
@@ -178,9 +204,11 @@ export class Pointer {
     const now = this.#doing;
     const [px, py] = editor.toPlane(...this.#place(e));
     const [fx, fy] = this.#from;
+    const snap = (n: number) => Math.round(n / SNAP) * SNAP;
     if (now?.what === 'move') {
-      const snap = (n: number) => Math.round(n / SNAP) * SNAP;
       editor.moving = { ids: now.ids, dx: snap(px - fx), dy: snap(py - fy) };
+    } else if (now?.what === 'bend') {
+      editor.bending = moved(now.line, now.segment, snap(now.segment.upright ? px - fx : py - fy));
     } else if (now?.what === 'mark') {
       editor.marquee = [Math.min(px, fx), Math.min(py, fy), Math.abs(px - fx), Math.abs(py - fy)];
       this.#root.setPointerCapture(e.pointerId);
@@ -237,6 +265,7 @@ export class Pointer {
     if (doing.what === 'press') this.#click(doing.item, doing.add);
     else if (doing.what === 'move') void this.#drop(doing.ids);
     else if (doing.what === 'mark') this.#mark(doing.item);
+    else if (doing.what === 'bend') void this.#bent(doing.link, doing.line);
     else if (doing.what === 'relink') this.#take(doing.link, doing.end);
     else this.#join(doing.from, e);
   }
@@ -247,6 +276,7 @@ export class Pointer {
     editor.moving = null;
     editor.marquee = null;
     editor.linking = null;
+    editor.bending = null;
     editor.target = null;
   }
 
@@ -272,6 +302,13 @@ export class Pointer {
       if (await editor.apply({ g: 'move', ids: [...ids], dx: moving.dx, dy: moving.dy })) shell.select(selected);
     }
     editor.moving = null;
+  }
+
+  async #bent(link: Item, was: Point[]): Promise<void> {
+    const line = editor.bending;
+    const isMoved = line?.some(([x, y], n) => x !== was[n]?.[0] || y !== was[n]?.[1]);
+    if (line && isMoved) await editor.apply({ g: 'bend', link: link.id, points: bendsOf(link, line) });
+    editor.bending = null;
   }
 
   /** Selects the symbols in the marked area; without an area it was a click. */

@@ -22,7 +22,17 @@ function overlap([ax, ay, aw, ah]: Box, [bx, by, bw, bh]: Box): number {
   return w > 0 && h > 0 ? w * h : 0;
 }
 
-export function freest({ places, size: [w, h], within: [left, top, wide, high], others, about, far }: Room): Point {
+/** A place, and what it costs there. */
+export interface Found {
+  at: Point;
+  cost: number;
+}
+
+/** The place of an element where it covers least. */
+export const freest = (room: Room): Point => cheapest(room).at;
+
+/** The same, with its cost. */
+export function cheapest({ places, size: [w, h], within: [left, top, wide, high], others, about, far }: Room): Found {
   const [mx, my] = [about[0] + about[2] / 2, about[1] + about[3] / 2];
   let best: Point = [left, top];
   let least = Infinity;
@@ -37,5 +47,5 @@ export function freest({ places, size: [w, h], within: [left, top, wide, high], 
       least = cost;
     }
   }
-  return best;
+  return { at: best, cost: least };
 }

@@ -195,6 +195,7 @@ export class Scene {
   towards(id: string, way: 'up' | 'down' | 'left' | 'right'): string | null {
     const item = this.byId.get(id);
     if (!item) return null;
+    if (item.part === 'link' && (way === 'up' || way === 'down')) return item.ends?.[way === 'up' ? 0 : 1] ?? null;
     const of = actionOf(id);
     if (of && (way === 'up' || way === 'down')) {
       const next = this.actions.get(of.step)?.[of.index + (way === 'down' ? 1 : -1)];

@@ -54,6 +54,10 @@ export type Alike = {
   encloses?: Array<string>;
   initial?: boolean;
   ends?: [string, string];
+  /** How many segments at the start and at the end of a link no bend moves; absent if none can be moved. */
+  held?: [number, number];
+  /** The bends that the text gives a link: true if it follows them, false if they do not fit at present. */
+  bent?: boolean;
 };
 
 /** The text before the last change; null if there was none. */
@@ -416,6 +420,14 @@ export type Gesture =
     how: Alignment;
   }
   | {
+    g: 'bend';
+    /** The link. */
+    link: ItemId;
+    /** For each height at which it goes sideways, that height, and the place from which it goes on; in pixels,
+     * from its start. Without any the link goes the way of the layout again. */
+    points: Array<[number, number]>;
+  }
+  | {
     g: 'tidy';
     /** The chart. */
     chart: string;
@@ -528,6 +540,10 @@ export type Item = {
   encloses?: Array<string>;
   initial?: boolean;
   ends?: [string, string];
+  /** How many segments at the start and at the end of a link no bend moves; absent if none can be moved. */
+  held?: [number, number];
+  /** The bends that the text gives a link: true if it follows them, false if they do not fit at present. */
+  bent?: boolean;
 };
 
 /** The id of a part of a chart. */

@@ -4,7 +4,7 @@
 //! transition under it) are as high as the distance of two steps. Pages follow one another
 //! downward.
 
-use g7_model::{Document, Item, Placed, Problem, Said, codes, say};
+use g7_model::{Document, Item, Problem, Said, codes, say};
 
 /// Distance of two branches and of two steps, in hundredths of the drawing's unit.
 const PITCH: i32 = 1300;
@@ -21,7 +21,7 @@ const STEP_LINES: i32 = 6;
 pub(super) fn check(doc: &Document, plc: &Said, problems: &mut Vec<Problem>) {
     for item in &doc.items {
         let Item::Layout(layout) = item else { continue };
-        let placed = layout.places.iter().filter(|p| !matches!(p.what, Placed::Comment(_)));
+        let placed = layout.places.iter().filter(|p| p.what.is_symbol());
         let places: Vec<_> = placed.collect();
         let (Some(left), Some(top)) = (places.iter().map(|p| p.x).min(), places.iter().map(|p| p.y).min())
         else {

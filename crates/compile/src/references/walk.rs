@@ -298,15 +298,15 @@ impl<'d> Walk<'_, 'd> {
             Item::Layout(l) => {
                 let chart = self.tracer.chart(&l.chart.text);
                 self.name(&l.chart, chart, Written::Name);
-                for place in &l.places {
-                    match &place.what {
+                for symbol in l.places.iter().flat_map(|p| p.what.symbols()) {
+                    match symbol {
                         Placed::Step(name) => self.step_name(&l.chart.text, name, Written::Name),
                         Placed::Transition(label) => {
                             let (chart, text) = (l.chart.text.to_string(), label.text.to_string());
                             let def = Definition::Transition { chart, label: text };
                             self.name(label, Some(def), Written::Name);
                         }
-                        Placed::TransitionNumber(_) | Placed::Comment(_) => {}
+                        Placed::TransitionNumber(_) | Placed::Comment(_) | Placed::Link(_) => {}
                     }
                 }
             }

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! Chart -> adrift, graph -> reduce -> tree -> shape, beside -> place -> route -> Placement
-//!                                                        \-> moved -/  (layout section)
+//!                                                        \-> moved -> bends -/  (layout section)
 //! ```
 //!
 //! A GRAFCET nearly always consists of sequences with branches in them. The graph is therefore
@@ -22,6 +22,7 @@
 //! - Each link of the chart is in `links` once or in `connectors` twice.
 
 mod adrift;
+mod bends;
 mod beside;
 mod graph;
 mod lines;
@@ -56,7 +57,8 @@ pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
         let shapes = shape::shapes(&graph, &tree, sizes);
         if shapes.failed.is_empty() {
             let auto = from_first(route::route(&shapes, &place::places(&shapes)), chart);
-            let placement = moved::moved(&graph, sizes, auto, &moved::given(chart, &graph, places));
+            let mut placement = moved::moved(&graph, sizes, auto, &moved::given(chart, &graph, places));
+            bends::bend(chart, &graph, sizes, places, &mut placement);
             return without_gaps(placement, graph.real);
         }
         tries += 1;

@@ -105,6 +105,32 @@ fn beside_neighbours(graph: &Graph, at: &mut [Point], given: &[Option<Point>]) {
     }
 }
 
+/// The symbols and double lines of a placement, which links go round.
+pub(crate) fn symbols(graph: &Graph, sizes: &Sizes, p: &Placement) -> Ways {
+    // Drawings of other tools are close: symbols have their own height here, without what the grid adds.
+    let room = |(n, e): (usize, Extent)| match n.checked_sub(graph.steps) {
+        None => Extent { down: sizes.steps.get(n).map_or(e.down, |s| s.down.clamp(SQUARE, e.down)), ..e },
+        Some(t) => match sizes.transitions.get(t) {
+            Some(text) => Extent { up: text.up.clamp(0, e.up), down: text.down.clamp(0, e.down), ..e },
+            None => e,
+        },
+    };
+    let rooms = extents(graph, sizes).into_iter().enumerate().map(room);
+    let boxes = p.steps.iter().chain(&p.transitions).zip(rooms).map(|(at, e)| Rect::around(*at, e));
+    let double = |b: &Bar| {
+        let r = Rect { x: b.at.x, y: b.at.y, w: b.w, h: DOUBLE };
+        (graph.steps as u32 + b.transition, r)
+    };
+    Ways::new((0..).zip(boxes).chain(p.bars.iter().map(double)).collect())
+}
+
+/// The arrows of a link: one on each part that runs upward.
+pub(crate) fn arrows(points: &[Point]) -> Vec<(Point, (i8, i8))> {
+    let up = points.windows(2).filter(|w| w[1].y < w[0].y && w[1].x == w[0].x);
+    up.map(|w| (Point { x: w[0].x, y: (w[0].y + w[1].y) / 2 - 60.min((w[0].y - w[1].y) / 2) }, (0, -1)))
+        .collect()
+}
+
 impl Moved<'_> {
     fn port(&self, n: u32) -> i32 {
         self.at[n as usize].y + if self.graph.is_step(n) { SQUARE } else { 0 }
@@ -177,23 +203,7 @@ impl Moved<'_> {
         let still = |b: &Bar| !side(b)[graph.steps + b.transition as usize];
         p.bars = auto.bars.into_iter().filter(still).collect();
         self.bars(&mut p, &below, &above);
-        // Drawings of other tools are close: symbols have their own height here, without what the grid adds.
-        let room = |(n, e): (usize, &Extent)| match n.checked_sub(graph.steps) {
-            None => {
-                Extent { down: sizes.steps.get(n).map_or(e.down, |s| s.down.clamp(SQUARE, e.down)), ..*e }
-            }
-            Some(t) => match sizes.transitions.get(t) {
-                Some(text) => Extent { up: text.up.clamp(0, e.up), down: text.down.clamp(0, e.down), ..*e },
-                None => *e,
-            },
-        };
-        let rooms = self.extents.iter().enumerate().map(room);
-        let boxes = self.at.iter().zip(rooms).map(|(at, e)| Rect::around(*at, e));
-        let double = |b: &Bar| {
-            let r = Rect { x: b.at.x, y: b.at.y, w: b.w, h: DOUBLE };
-            (graph.steps as u32 + b.transition, r)
-        };
-        let mut ways = Ways::new((0..).zip(boxes).chain(p.bars.iter().map(double)).collect());
+        let mut ways = symbols(graph, sizes, &p);
         let mut drawn: HashMap<(End, End), Link> =
             auto.links.into_iter().map(|l| ((l.from, l.to), l)).collect();
         let broken = |from: End, to: End| auto.connectors.iter().any(|c| (c.from, c.to) == (from, to));
@@ -303,10 +313,8 @@ impl Moved<'_> {
         last.reverse();
         points.extend(last);
         let points = tidy(points);
-        let up = points.windows(2).filter(|w| w[1].y < w[0].y && w[1].x == w[0].x);
-        let arrows = up
-            .map(|w| (Point { x: w[0].x, y: (w[0].y + w[1].y) / 2 - 60.min((w[0].y - w[1].y) / 2) }, (0, -1)))
-            .collect();
-        Link { from: end(graph.steps, from), to: end(graph.steps, to), points, arrows }
+        let arrows = arrows(&points);
+        let (from, to) = (end(graph.steps, from), end(graph.steps, to));
+        Link::new(from, to, points, arrows)
     }
 }

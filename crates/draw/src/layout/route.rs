@@ -31,12 +31,8 @@ pub(crate) fn route(s: &Shapes, p: &Places) -> Placement {
     s.tree.cuts.iter().for_each(|l| broken[*l as usize] = true);
     for l in (0..graph.links.len()).filter(|l| !broken[*l]) {
         let (from, to) = graph.links[l];
-        let mut link = Link {
-            from: end(graph.steps, from),
-            to: end(graph.steps, to),
-            points: Vec::new(),
-            arrows: Vec::new(),
-        };
+        let (a, b) = (end(graph.steps, from), end(graph.steps, to));
+        let mut link = Link::new(a, b, Vec::new(), Vec::new());
         let mut points = start(s, p, l);
         match back[l] {
             None => finish(s, p, l, &mut points),

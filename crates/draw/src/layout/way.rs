@@ -84,6 +84,11 @@ impl Ways {
         self.count(points, [from, to]) > 0
     }
 
+    /// How often a line crosses a symbol, and lies on a link that has another start and another end.
+    pub(crate) fn faults(&self, points: &[Point], from: u32, to: u32) -> usize {
+        self.count(points, [from, to]) + self.lines.shared(points, [from, to])
+    }
+
     fn count(&self, points: &[Point], ends: [u32; 2]) -> usize {
         let mut count = 0;
         for (k, w) in points.windows(2).enumerate() {

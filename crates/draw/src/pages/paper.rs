@@ -307,7 +307,7 @@ impl<'a> Paper<'a> {
                 } else {
                     bent(bottom, at, join)
                 };
-                p.links.push(Link { from: link_from, to: link_to, points, arrows: Vec::new() });
+                p.links.push(Link::new(link_from, link_to, points, Vec::new()));
             } else {
                 let tip = Point { x: at.x, y: high - entering * CONNECTOR };
                 entering += 1;
@@ -341,7 +341,7 @@ impl<'a> Paper<'a> {
                 } else {
                     bent(at, step, fork)
                 };
-                p.links.push(Link { from, to: into, points, arrows: Vec::new() });
+                p.links.push(Link::new(from, into, points, Vec::new()));
             } else {
                 leaving += 1;
                 let tip = Point { x: at.x, y: low + first + leaving * CONNECTOR };

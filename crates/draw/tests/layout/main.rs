@@ -1,6 +1,7 @@
 //! Checks the geometry of layouts: nothing overlaps, no link crosses a symbol.
 #![allow(clippy::disallowed_methods, reason = "the tests read the examples")]
 
+mod bends;
 mod charts;
 mod conventions;
 mod geometry;

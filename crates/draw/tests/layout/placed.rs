@@ -27,7 +27,7 @@ fn name(text: &str) -> Name {
 }
 
 fn at(what: Placed, x: i32, y: i32) -> PlaceAt {
-    PlaceAt { what, x, y, at: Span::default().into() }
+    PlaceAt { what, x, y, then: Vec::new(), at: Span::default().into() }
 }
 
 fn all_as(p: &Placement, chart: &Chart, shift: i32) -> Vec<PlaceAt> {

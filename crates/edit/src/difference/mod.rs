@@ -99,10 +99,9 @@ fn settled(draft: &Draft<'_>, item: &Item) -> Option<Vec<PlaceAt>> {
     let numbers: BTreeMap<(u32, u32), usize> =
         now.transitions().enumerate().map(|(n, t)| (key(t), n)).collect();
     let number = |t: Option<&Transition>| t.and_then(|t| numbers.get(&key(t)).copied());
-    let mut places = layout.places.clone();
-    places.retain_mut(|p| match &mut p.what {
+    let stays = |symbol: &mut Placed, fresh: bool| match symbol {
         Placed::Step(name) => now.steps().any(|s| s.name == *name) || !then.steps().any(|s| s.name == *name),
-        Placed::TransitionNumber(n) if !is_fresh(p.at) => {
+        Placed::TransitionNumber(n) if !fresh => {
             let t = then.transitions().nth(*n as usize);
             match (t, number(t)) {
                 (None, _) => true,
@@ -117,9 +116,33 @@ fn settled(draft: &Draft<'_>, item: &Item) -> Option<Vec<PlaceAt>> {
             let has = |c: &Chart| c.transitions().any(|t| t.label.as_ref() == Some(label));
             has(now) || !has(then)
         }
-        Placed::TransitionNumber(_) | Placed::Comment(_) => true,
+        Placed::TransitionNumber(_) | Placed::Comment(_) | Placed::Link(_) => true,
+    };
+    let mut places = layout.places.clone();
+    places.retain_mut(|p| {
+        let fresh = is_fresh(p.at);
+        let was = joined(then, &p.what);
+        // Both ends take their new numbers, even where one is gone.
+        let gone = p.what.symbols_mut().map(|symbol| stays(symbol, fresh)).filter(|stays| !stays).count();
+        gone == 0 && (!was || joined(now, &p.what))
     });
     Some(places)
+}
+
+/// True if an entry of a layout names a link that the chart has.
+fn joined(chart: &Chart, entry: &Placed) -> bool {
+    let Placed::Link(ends) = entry else { return false };
+    let (step, symbol, leaving) = match &**ends {
+        (Placed::Step(step), transition) => (step, transition, true),
+        (transition, Placed::Step(step)) => (step, transition, false),
+        _ => return false,
+    };
+    let transition = match symbol {
+        Placed::Transition(label) => chart.transitions().find(|t| t.label.as_ref() == Some(label)),
+        Placed::TransitionNumber(n) => chart.transitions().nth(*n as usize),
+        _ => None,
+    };
+    transition.is_some_and(|t| if leaving { t.from.contains(step) } else { t.to.contains(step) })
 }
 
 fn key(t: &Transition) -> (u32, u32) {

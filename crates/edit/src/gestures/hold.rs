@@ -27,8 +27,10 @@ pub(crate) fn hold(d: &mut Draft<'_>) {
             continue;
         }
         let found = placed.missing(then, d);
-        let places: Vec<PlaceAt> =
-            found.into_iter().map(|(what, (x, y))| PlaceAt { what, x, y, at: d.fresh() }).collect();
+        let places: Vec<PlaceAt> = found
+            .into_iter()
+            .map(|(what, (x, y))| PlaceAt { what, x, y, then: Vec::new(), at: d.fresh() })
+            .collect();
         if !places.is_empty() {
             with_layout(d, name, |l| l.places.extend(places));
         }
@@ -56,7 +58,7 @@ impl<'a> Placements<'a> {
                 Placed::TransitionNumber(n) => {
                     placed.transitions.extend(Some(*n as usize).filter(|n| *n < count))
                 }
-                Placed::Comment(_) => {}
+                Placed::Comment(_) | Placed::Link(_) => {}
             }
         }
         placed

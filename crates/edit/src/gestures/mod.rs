@@ -62,6 +62,7 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Kind { id, kind } => fields::kind(d, id, *kind),
         Gesture::Move { ids, dx, dy } => places::shift(d, ids, *dx, *dy),
         Gesture::Align { ids, how } => places::align(d, ids, *how),
+        Gesture::Bend { link, points } => places::bend(d, link, points),
         Gesture::Tidy { chart } => places::tidy(d, chart),
         Gesture::Paste { chart, text, at } => paste::paste(d, chart, text, *at),
         Gesture::Macro { ids } => group::into_macro(d, ids),

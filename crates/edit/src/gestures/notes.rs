@@ -23,7 +23,7 @@ pub(crate) fn add(d: &mut Draft<'_>, chart: &str, text: &str, at: [f64; 2]) -> R
 
 /// The same, for a place given in hundredths of a unit.
 pub(crate) fn put(d: &mut Draft<'_>, chart: &str, text: &str, (x, y): (i32, i32)) {
-    let place = PlaceAt { what: Placed::Comment(text.into()), x, y, at: d.fresh() };
+    let place = PlaceAt { what: Placed::Comment(text.into()), x, y, then: Vec::new(), at: d.fresh() };
     let mut number = 0;
     layout_section::with_layout(d, chart, |layout| {
         number = comments(layout).count();

@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use g7_model::{Item, Name, PlaceAt, Placed, Span, say};
 
-use super::layout_section::{FARTHEST, point, with_layout, without_empty_layout};
-use super::nodes::{Node, node, one_chart};
+use super::layout_section::{FARTHEST, layout, point, with_layout, without_empty_layout};
+use super::nodes::{Node, link, node, one_chart};
 use super::notes;
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
@@ -18,16 +18,21 @@ pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Resul
     if let Part::Note(n) = id.part {
         return notes::shift(d, &id.chart, n, (x, y));
     }
-    let what = match node(d, id)? {
-        Node::Step(name) => Placed::Step(d.new_name(&name)),
-        Node::Transition(at) => placed(d, &id.chart, at)?,
-    };
+    let what = named(d, id)?;
     let at = d.fresh();
     with_layout(d, &id.chart, |layout| match layout.places.iter_mut().find(|p| p.what == what) {
         Some(there) => (there.x, there.y) = (x, y),
-        None => layout.places.push(PlaceAt { what, x, y, at }),
+        None => layout.places.push(PlaceAt { what, x, y, then: Vec::new(), at }),
     });
     Ok(())
+}
+
+/// The name of a step or transition in a layout section.
+fn named(d: &mut Draft<'_>, id: &ItemId) -> Result<Placed, Refusal> {
+    match node(d, id)? {
+        Node::Step(name) => Ok(Placed::Step(d.new_name(&name))),
+        Node::Transition(at) => placed(d, &id.chart, at),
+    }
 }
 
 /// The name of a transition in a layout section: its label or its number.
@@ -37,6 +42,37 @@ fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
     }
     let n = d.chart(chart)?.transitions().position(|t| t.at.0 == at).unwrap_or_default();
     Ok(Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)))
+}
+
+/// Gives a link bends, or takes them away.
+#[inline(never)]
+pub(crate) fn bend(d: &mut Draft<'_>, id: &ItemId, points: &[[f64; 2]]) -> Result<(), Refusal> {
+    let Part::Link(a, b) = &id.part else { return refuse(say!("this is done with a link; choose one")) };
+    let (chart, step, at, leaving) = link(d, &id.chart, a, b)?;
+    let t = d.transition(&chart, at)?;
+    if !(if leaving { &t.from } else { &t.to }).iter().any(|n| *n.text == *step) {
+        return refuse(say!("this link is not there"));
+    }
+    let (step, transition) = (Placed::Step(d.new_name(&step)), placed(d, &chart, at)?);
+    let ends = if leaving { (step, transition) } else { (transition, step) };
+    let what = Placed::Link(Box::new(ends));
+    let points: Vec<(i32, i32)> = points.iter().map(|p| point(*p)).collect::<Result<_, _>>()?;
+    let at = d.fresh();
+    with_layout(d, &chart, |layout| {
+        let there = layout.places.iter().position(|p| p.what == what);
+        let Some((&(x, y), then)) = points.split_first() else {
+            layout.places.retain(|p| p.what != what);
+            return;
+        };
+        let then = then.to_vec();
+        match there.and_then(|n| layout.places.get_mut(n)) {
+            Some(there) => (there.x, there.y, there.then) = (x, y, then),
+            None => layout.places.push(PlaceAt { what, x, y, then, at }),
+        }
+    });
+    without_empty_layout(d, &chart);
+    d.select(id.clone());
+    Ok(())
 }
 
 /// Renames the transition in the layout section when its label changes.
@@ -55,9 +91,9 @@ pub(crate) fn relabel(
         if *layout.chart.text != *chart {
             continue;
         }
-        for p in &mut layout.places {
-            if matches!(&p.what, Placed::Transition(l) if *l.text == *old) {
-                p.what = match new {
+        for symbol in layout.places.iter_mut().flat_map(|p| p.what.symbols_mut()) {
+            if matches!(symbol, Placed::Transition(l) if *l.text == *old) {
+                *symbol = match new {
                     Some(name) => Placed::Transition(name.clone()),
                     None => Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)),
                 };
@@ -127,7 +163,41 @@ pub(crate) fn shift(d: &mut Draft<'_>, ids: &[ItemId], dx: f64, dy: f64) -> Resu
         *x = bounded(i64::from(*x) + i64::from(dx))?;
         *y = bounded(i64::from(*y) + i64::from(dy))?;
     }
-    put(d, &places)
+    put(d, &places)?;
+    shift_bends(d, &places, (dx, dy))
+}
+
+/// Moves the bends of links whose two ends have moved.
+fn shift_bends(
+    d: &mut Draft<'_>,
+    moved: &BTreeMap<ItemId, (i32, i32)>,
+    (dx, dy): (i32, i32),
+) -> Result<(), Refusal> {
+    let Some(chart) = moved.keys().next().map(|id| id.chart.clone()) else { return Ok(()) };
+    if layout(&d.doc, &chart).is_none_or(|l| l.places.iter().all(|p| !matches!(p.what, Placed::Link(_)))) {
+        return Ok(());
+    }
+    let mut symbols = Vec::new();
+    for id in moved.keys().filter(|id| id.chart == chart && !matches!(id.part, Part::Note(_))) {
+        symbols.push(named(d, id)?);
+    }
+    let mut far = Ok(());
+    with_layout(d, &chart, |layout| {
+        for p in &mut layout.places {
+            let Placed::Link(ends) = &p.what else { continue };
+            if symbols.contains(&ends.0) && symbols.contains(&ends.1) {
+                let bends = std::iter::once((&mut p.x, &mut p.y))
+                    .chain(p.then.iter_mut().map(|b| (&mut b.0, &mut b.1)));
+                for (x, y) in bends {
+                    match (bounded(i64::from(*x) + i64::from(dx)), bounded(i64::from(*y) + i64::from(dy))) {
+                        (Ok(right), Ok(down)) => (*x, *y) = (right, down),
+                        (Err(refusal), _) | (_, Err(refusal)) => far = Err(refusal),
+                    }
+                }
+            }
+        }
+    });
+    far
 }
 
 fn bounded(n: i64) -> Result<i32, Refusal> {

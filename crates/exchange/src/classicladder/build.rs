@@ -141,6 +141,7 @@ fn chart(
         what,
         x: x.saturating_mul(COLUMN),
         y: y.saturating_mul(LINE),
+        then: Vec::new(),
         at: at.into(),
     };
     let mut first = None;

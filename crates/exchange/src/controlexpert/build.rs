@@ -146,7 +146,13 @@ fn chart(sheet: &Sheet, title: &str, inner: &Inner, report: &mut Report) -> (Cha
     let mut items = Vec::new();
     let mut places = Vec::new();
     let mut place = |what: Placed, (x, y): (i32, i32), at: Span| {
-        places.push(PlaceAt { what, x: x.saturating_mul(COLUMN), y: y.saturating_mul(ROW), at: at.into() });
+        places.push(PlaceAt {
+            what,
+            x: x.saturating_mul(COLUMN),
+            y: y.saturating_mul(ROW),
+            then: Vec::new(),
+            at: at.into(),
+        });
     };
     for node in &sheet.steps {
         let step = step(node, sheet, inner, report);

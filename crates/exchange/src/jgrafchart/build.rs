@@ -334,6 +334,7 @@ impl Builder<'_> {
             what,
             x: x.saturating_mul(PER_PIXEL),
             y: y.saturating_mul(PER_PIXEL),
+            then: Vec::new(),
             at: at.into(),
         };
         let drawn = sheet.steps.iter().enumerate().filter(|(_, step)| step.fused.is_none());

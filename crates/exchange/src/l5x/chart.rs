@@ -221,7 +221,13 @@ impl Reader {
 
     fn place(&mut self, what: Placed, node: Xml, at: Span) {
         let (x, y) = spot(node);
-        self.places.push(PlaceAt { what, x: x * PER_PIXEL, y: y * PER_PIXEL, at: at.into() });
+        self.places.push(PlaceAt {
+            what,
+            x: x * PER_PIXEL,
+            y: y * PER_PIXEL,
+            then: Vec::new(),
+            at: at.into(),
+        });
     }
 
     fn flow(&self, content: Xml, report: &mut Report) -> Flow {

@@ -390,7 +390,7 @@ fn priority(node: Xml) -> Option<u32> {
 }
 
 fn placed(what: Placed, x: i32, y: i32, at: g7_model::Span) -> PlaceAt {
-    PlaceAt { what, x, y, at: at.into() }
+    PlaceAt { what, x, y, then: Vec::new(), at: at.into() }
 }
 
 fn empty_transition(from: Vec<Name>, to: Vec<Name>) -> Transition {

@@ -539,8 +539,8 @@ impl<'d> Lower<'d> {
             if let Some(there) = charts.iter().find(|c| c.0 == chart) {
                 made.chart = there.1.name.clone();
             }
-            for place in &mut made.places {
-                if let Placed::Step(name) = &mut place.what
+            for symbol in made.places.iter_mut().flat_map(|p| p.what.symbols_mut()) {
+                if let Placed::Step(name) = symbol
                     && let Some(key) = self.scopes.step_in(chart, &name.text)
                 {
                     *name = Name::new(self.names.step(key), name.at.0);

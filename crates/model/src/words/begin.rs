@@ -350,4 +350,5 @@ pub const LAYOUT: &[Word] = &[
         "comment",
         ["the place of a comment", "la place d’un commentaire", "o lugar de um comentário"],
     ),
+    Word::free("link", ["the bends of a link", "les coudes d’une liaison", "as dobras de uma ligação"]),
 ];

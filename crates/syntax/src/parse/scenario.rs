@@ -365,21 +365,12 @@ impl Parser<'_> {
     fn place_at(&mut self) -> Option<PlaceAt> {
         let start = self.cur.start;
         let what = match self.word() {
-            "step" => {
+            "step" | "transition" => self.placed_symbol()?,
+            "link" => {
                 self.bump();
-                Placed::Step(self.name(say!("the name of a step")))
-            }
-            "transition" => {
-                self.bump();
-                if self.eat(Tok::Hash) {
-                    Placed::TransitionNumber(
-                        self.integer_u32(say!("the transition's place in the text, from 0")),
-                    )
-                } else {
-                    Placed::Transition(
-                        self.name(say!("the label of a transition, or `#` and its place in the text")),
-                    )
-                }
+                let from = self.link_end()?;
+                self.expect(Tok::Arrow, say!("`->`"));
+                Placed::Link(Box::new((from, self.link_end()?)))
             }
             "comment" => {
                 self.bump();
@@ -394,13 +385,49 @@ impl Parser<'_> {
         if !self.eat_word("at") {
             self.expected(say!("`at` and a place such as `(0, 1.5)`"));
         }
+        let (x, y) = self.point();
+        let mut then = Vec::new();
+        while matches!(what, Placed::Link(_)) && self.eat(Tok::Comma) {
+            then.push(self.point());
+        }
+        Some(PlaceAt { what, x, y, then, at: self.since(start).into() })
+    }
+
+    /// `step 2`, `transition t7` or `transition #0`; `None` for anything else.
+    fn placed_symbol(&mut self) -> Option<Placed> {
+        let is_step = match self.word() {
+            "step" => true,
+            "transition" => false,
+            _ => return None,
+        };
+        self.bump();
+        Some(if is_step {
+            Placed::Step(self.name(say!("the name of a step")))
+        } else if self.eat(Tok::Hash) {
+            Placed::TransitionNumber(self.integer_u32(say!("the transition's place in the text, from 0")))
+        } else {
+            Placed::Transition(self.name(say!("the label of a transition, or `#` and its place in the text")))
+        })
+    }
+
+    /// One end of a link.
+    fn link_end(&mut self) -> Option<Placed> {
+        let end = self.placed_symbol();
+        if end.is_none() {
+            self.expected(say!("`step` or `transition`, an end of the link"));
+        }
+        end
+    }
+
+    /// `(0, 1.5)`, in hundredths.
+    fn point(&mut self) -> (i32, i32) {
         let open = self.here();
         self.expect(Tok::LParen, say!("`(`"));
         let x = self.hundredths();
         self.expect(Tok::Comma, say!("`,`"));
         let y = self.hundredths();
         self.close(Tok::RParen, say!("`)`"), open);
-        Some(PlaceAt { what, x, y, at: self.since(start).into() })
+        (x, y)
     }
 
     /// A number in hundredths, rounded.

@@ -321,7 +321,17 @@ impl Printer<'_> {
     }
 
     pub(super) fn place_at(&mut self, place: &PlaceAt) {
-        match &place.what {
+        self.placed(&place.what);
+        self.push(" at ");
+        self.point((place.x, place.y));
+        for bend in &place.then {
+            self.push(", ");
+            self.point(*bend);
+        }
+    }
+
+    fn placed(&mut self, what: &Placed) {
+        match what {
             Placed::Step(name) => {
                 self.push("step ");
                 self.name(&name.text);
@@ -335,8 +345,17 @@ impl Printer<'_> {
                 self.push("comment ");
                 self.push(&quote::quote(text, '"'));
             }
+            Placed::Link(ends) => {
+                self.push("link ");
+                self.placed(&ends.0);
+                self.push(" -> ");
+                self.placed(&ends.1);
+            }
         }
-        self.push(&format!(" at ({}, {})", hundredths(place.x), hundredths(place.y)));
+    }
+
+    fn point(&mut self, (x, y): (i32, i32)) {
+        self.push(&format!("({}, {})", hundredths(x), hundredths(y)));
     }
 }
 

@@ -216,7 +216,8 @@ fn properties_and_layouts() {
          prove after a until b or c expect X1\nprove between (a and b) and c never X1 and d\n\
          prove a and b leads to c \"at last\"\nprove at most 2 of (a, b, c)\n\
          prove never a and b with Tank \"closed\"\nassume not (a and b)\n\
-         layout G { step 1 at (0, 1.5) transition t7 at (-2.25, 3) transition #0 at (0,0) comment \"x\" at (1, 1) }",
+         layout G { step 1 at (0, 1.5) transition t7 at (-2.25, 3) transition #0 at (0,0) comment \"x\" at (1, 1)\n\
+         link transition #0 -> step 1 at (-5, 12.5), (0, -3) link step 1 -> transition t7 at (3, 4) }",
     );
     let properties: Vec<String> = d
         .items
@@ -256,10 +257,16 @@ fn properties_and_layouts() {
     );
     let Some(Item::Layout(layout)) = d.items.last() else { panic!("{d:?}") };
     let places: Vec<_> = layout.places.iter().map(|p| (p.x, p.y)).collect();
-    assert_eq!(places, [(0, 150), (-225, 300), (0, 0), (100, 100)]);
+    assert_eq!(places, [(0, 150), (-225, 300), (0, 0), (100, 100), (-500, 1250), (300, 400)]);
+    let bends: Vec<_> = layout.places.iter().flat_map(|p| &p.then).collect();
+    assert_eq!(bends, [&(0, -300)]);
     assert!(matches!(&layout.places[1].what, Placed::Transition(n) if &*n.text == "t7"));
     assert!(matches!(&layout.places[2].what, Placed::TransitionNumber(0)));
     assert!(matches!(&layout.places[3].what, Placed::Comment(c) if &**c == "x"));
+    let Placed::Link(back) = &layout.places[4].what else { panic!("{layout:?}") };
+    assert!(matches!(&**back, (Placed::TransitionNumber(0), Placed::Step(n)) if &*n.text == "1"));
+    let Placed::Link(on) = &layout.places[5].what else { panic!("{layout:?}") };
+    assert!(matches!(&**on, (Placed::Step(_), Placed::Transition(n)) if &*n.text == "t7"));
 }
 
 #[test]

@@ -114,17 +114,22 @@ pub(crate) fn property() -> impl Strategy<Value = Property> {
 }
 
 pub(crate) fn layout() -> impl Strategy<Value = Layout> {
+    let symbol = || {
+        prop_oneof![
+            name().prop_map(Placed::Step),
+            name().prop_map(Placed::Transition),
+            any::<u32>().prop_map(Placed::TransitionNumber),
+        ]
+    };
     let what = prop_oneof![
-        name().prop_map(Placed::Step),
-        name().prop_map(Placed::Transition),
-        any::<u32>().prop_map(Placed::TransitionNumber),
+        symbol(),
         text().prop_map(Placed::Comment),
+        (symbol(), symbol()).prop_map(|ends| Placed::Link(Box::new(ends))),
     ];
-    let place = (what, -1_000_000..=1_000_000i32, any::<i32>()).prop_map(|(what, x, y)| PlaceAt {
-        what,
-        x,
-        y: y.max(-i32::MAX),
-        at: at(),
+    let point = || (-1_000_000..=1_000_000i32, any::<i32>().prop_map(|y| y.max(-i32::MAX)));
+    let place = (what, point(), prop::collection::vec(point(), 0..3)).prop_map(|(what, (x, y), then)| {
+        let then = if matches!(what, Placed::Link(_)) { then } else { Vec::new() };
+        PlaceAt { what, x, y, then, at: at() }
     });
     (name(), prop::collection::vec(place, 0..4)).prop_map(|(chart, places)| Layout {
         chart,
