@@ -199,8 +199,7 @@ impl Graded {
 /// Grades a submission.
 pub fn judge(exercise: &Exercise, submission: Source, limits: &mut Limits<'_>) -> Graded {
     let changed = locked::changed(&exercise.locked, &exercise.template.document, &submission);
-    let broken = submission.is_broken();
-    let lacks = if broken { Vec::new() } else { needs::lacks(&exercise.needs, &submission) };
+    let lacks = needs::lacks(&exercise.needs, &submission);
     let mut graded = Graded {
         source: submission.charts_alone().asked_by(&exercise.asked),
         mark: Mark::Unread,
@@ -211,15 +210,16 @@ pub fn judge(exercise: &Exercise, submission: Source, limits: &mut Limits<'_>) -
         coverage: Coverage::default(),
         questions: Vec::new(),
     };
-    if broken {
-        graded.problems = errors(graded.source.read_problems());
-        return graded;
-    }
-    match tested(&graded.source, exercise, limits, &mut graded.coverage) {
+    let tests = if graded.source.is_broken() {
+        Err(errors(graded.source.read_problems()))
+    } else {
+        tested(&graded.source, exercise, limits, &mut graded.coverage)
+    };
+    match tests {
         Ok(tests) => graded.tests = tests,
         Err(problems) => {
-            graded.problems = problems;
-            return graded;
+            // Of charts that cannot be read, nobody knows what is missing.
+            return Graded { problems, lacks: Vec::new(), changed: Vec::new(), ..graded };
         }
     }
     graded.questions = answered(&graded.source, exercise, limits);

@@ -56,7 +56,7 @@ impl Shape {
             .map(|u| u.definition.clone())
             .filter(|d| !matches!(d, Definition::Step { .. } | Definition::Transition { .. }))
             .collect();
-        let items = source.document.items.iter().filter(|i| is_of_charts(i)).cloned().collect();
+        let items = source.whole().items.iter().filter(|i| is_of_charts(i)).cloned().collect();
         let text = g7_syntax::print(&Document { items, notes: Vec::new() }, None);
         let (document, problems) = g7_syntax::parse(&text, FileId(0));
         if !problems.is_empty() || document.charts().next().is_none() {

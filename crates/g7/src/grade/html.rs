@@ -1,7 +1,7 @@
 //! The pages: `index.html` for the teacher, and one for each submission, which its author may be given.
 //!
 //! A page of a submission tells of a hidden test and a hidden question no more than whether it passed: its title, its
-//! place and its chronogram stand in the teacher's page alone.
+//! place and its chronogram stand in the teacher's page alone, and so do the names of others whose charts are the same.
 
 use std::collections::BTreeSet;
 
@@ -11,7 +11,7 @@ use g7_model::{Said, say};
 use g7_rig::testing::Sort;
 
 use super::pages::MARK;
-use super::rows::Row;
+use super::rows::{Row, Rows};
 use super::table::{alike, answer, errors, notes, percent};
 use crate::failure::raw;
 use crate::message::told;
@@ -21,10 +21,11 @@ use crate::tongue::language;
 const STYLE: &str = include_str!("page.css");
 
 /// The pages by their file names.
-pub(super) fn pages(exercise: &Exercise, rows: &[Row]) -> Vec<(String, String)> {
+pub(super) fn pages(exercise: &Exercise, all: &Rows) -> Vec<(String, String)> {
+    let rows = &all.rows;
     let mut taken = BTreeSet::from(["index.html".to_owned()]);
     let names: Vec<String> = rows.iter().map(|row| file_name(&row.name, &mut taken)).collect();
-    let mut pages = vec![("index.html".to_owned(), index(exercise, rows, &names))];
+    let mut pages = vec![("index.html".to_owned(), index(exercise, all, &names))];
     pages.extend(rows.iter().zip(&names).map(|(row, name)| (name.clone(), page(exercise, row))));
     pages
 }
@@ -65,7 +66,8 @@ fn class(mark: Mark) -> &'static str {
 }
 
 /// The page of the teacher.
-fn index(exercise: &Exercise, rows: &[Row], names: &[String]) -> String {
+fn index(exercise: &Exercise, all: &Rows, names: &[String]) -> String {
+    let rows = &all.rows;
     let title = exercise.statement.title(language());
     let passed = rows.iter().filter(|r| r.mark() == Mark::Passed).count();
     let mut body = format!("<h1>{}</h1>\n", escape(title));
@@ -73,18 +75,12 @@ fn index(exercise: &Exercise, rows: &[Row], names: &[String]) -> String {
     body += &format!("<p>{}</p>\n", text(&counted));
     let warning = say!("this page tells the hidden tests; the others do not");
     body += &format!("<p class=\"faint\">{}</p>\n<div class=\"wide\"><table>\n<thead><tr>", text(&warning));
-    let heads = [
-        say!("submission"),
-        say!("result"),
-        say!("tests"),
-        say!("coverage"),
-        say!("questions"),
-        say!("first failing test"),
-    ];
+    let heads = [say!("submission"), say!("result"), say!("tests"), say!("coverage"), say!("questions")];
     heads.iter().for_each(|head| body += &format!("<th scope=\"col\">{}</th>", text(head)));
     body += "</tr></thead>\n<tbody>\n";
     rows.iter().zip(names).for_each(|(row, name)| body += &line(row, name));
     body += "</tbody>\n</table></div>\n";
+    body += &list(&say!("Alike"), all.groups.iter().map(|group| told(&alike(group))).collect());
     frame(title, &body)
 }
 
@@ -104,21 +100,25 @@ fn line(row: &Row, page: &str) -> String {
         ];
     }
     let [tests, coverage, questions] = cells;
-    let notes: Vec<String> = notes(row).iter().map(|n| format!("<li>{}</li>", escape(n))).collect();
-    let notes = if notes.is_empty() { String::new() } else { format!("<ul>{}</ul>", notes.concat()) };
-    let first = row.first_failing().map(first).unwrap_or_default();
-    format!(
+    let mut line = format!(
         "<tr><th scope=\"row\"><a href=\"{page}\">{}</a></th><td class=\"{}\">{}</td><td class=\"number\">{tests}</td>\
-         <td class=\"number\">{coverage}</td><td class=\"number\">{questions}</td><td>{first}{notes}</td></tr>\n",
+         <td class=\"number\">{coverage}</td><td class=\"number\">{questions}</td></tr>\n",
         escape(&row.name),
         class(row.mark()),
         text(&row.mark().said()),
-    )
+    );
+    let notes: Vec<String> = notes(row).iter().map(|n| format!("<li>{}</li>", escape(n))).collect();
+    if !notes.is_empty() {
+        let first = row.first_failing().map(first).unwrap_or_default();
+        line +=
+            &format!("<tr class=\"more\"><td colspan=\"5\"><ul>{}</ul>{first}</td></tr>\n", notes.concat());
+    }
+    line
 }
 
 /// The first failing test, with its chronogram folded in.
 fn first(test: &Tested) -> String {
-    let title = escape(&test.title);
+    let title = format!("{}: {}", text(&say!("first failing test")), escape(&test.title));
     match &test.ended {
         Ended::Failed(_) => format!("<details><summary>{title}</summary>{}</details>", failure(test)),
         Ended::Blocked { .. } | Ended::Passed => title,
@@ -147,9 +147,6 @@ fn page(exercise: &Exercise, row: &Row) -> String {
             }
             body += &drawing(graded);
         }
-    }
-    if !row.like.is_empty() {
-        body += &format!("<p>{}</p>\n", text(&alike(row)));
     }
     frame(&title, &body)
 }

@@ -26,7 +26,7 @@ use crate::message::{done, talk, told, wrote};
 use crate::progress::Progress;
 use crate::{files, style};
 pub(crate) use args::Grade;
-use rows::Row;
+use rows::Rows;
 
 pub(crate) fn grade(args: &Grade) -> Result<Verdict, Failure> {
     let found = folder::exercise(&args.exercise)?;
@@ -49,12 +49,12 @@ pub(crate) fn grade(args: &Grade) -> Result<Verdict, Failure> {
         return Ok(Verdict::Fine);
     };
     let mut progress = Progress::new("grading", submissions.len() as u64);
-    let rows = rows::rows(args, &exercise, &submissions, || progress.step())?;
+    let all = rows::rows(args, &exercise, &submissions, || progress.step())?;
     progress.end();
-    table::rows(&mut out, &rows)?;
+    table::rows(&mut out, &all)?;
     out.flush()?;
-    write(args, &exercise, &rows)?;
-    let passed = rows.iter().all(|row| row.mark() == Mark::Passed);
+    write(args, &exercise, &all)?;
+    let passed = all.rows.iter().all(|row| row.mark() == Mark::Passed);
     Ok(if passed { Verdict::Fine } else { Verdict::Found })
 }
 
@@ -88,17 +88,17 @@ fn refuse_outputs(args: &Grade) -> Result<(), Failure> {
     args.html.as_deref().map_or(Ok(()), |folder| pages::refuse_foreign(folder, &from))
 }
 
-fn write(args: &Grade, exercise: &Exercise, rows: &[Row]) -> Result<(), Failure> {
+fn write(args: &Grade, exercise: &Exercise, all: &Rows) -> Result<(), Failure> {
     if let Some(path) = &args.csv {
-        files::write(path, data::csv(rows).as_bytes())?;
+        files::write(path, data::csv(&all.rows).as_bytes())?;
         wrote(path.display());
     }
     if let Some(path) = &args.json {
-        files::write(path, data::json(exercise, rows).as_bytes())?;
+        files::write(path, data::json(exercise, &all.rows).as_bytes())?;
         wrote(path.display());
     }
     if let Some(folder) = &args.html {
-        let made = html::pages(exercise, rows);
+        let made = html::pages(exercise, all);
         pages::write(folder, &made)?;
         done(&say!("wrote"), format!("{} ({})", folder.display(), made.len()));
     }

@@ -1,6 +1,5 @@
 //! Grades submissions, several at a time, and finds those that are alike. Each becomes a row of the reports.
 
-use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use g7_grade::{Exercise, Graded, Limits, MODEL, Mark, Shape, Stop, TEMPLATE, Tested, groups, judge};
@@ -10,7 +9,7 @@ use g7_rig::Source;
 
 use super::args::Grade;
 use super::folder::Submission;
-use crate::failure::{Failure, raw};
+use crate::failure::Failure;
 use crate::share;
 
 /// A submission in the reports.
@@ -46,11 +45,7 @@ pub(super) fn solutions(
     let one = |number: usize| {
         let (path, bytes) = all.get(number).copied().unwrap_or_default();
         let name = args.exercise.join(path).display().to_string();
-        let nothing = |_: &str| Err(say!("a solution uses the library and the files of the template alone"));
-        Ok((
-            path.to_owned(),
-            work(args, exercise, exercise.submission(&name, bytes.to_vec(), &mut { nothing })),
-        ))
+        Ok((path.to_owned(), work(args, exercise, exercise.submission(&name, bytes.to_vec(), &mut no_file))))
     };
     share::in_order(args.jobs, all.len(), one, |done| {
         graded.push(done);
@@ -63,13 +58,19 @@ pub(super) fn solutions(
     }
 }
 
-/// Grades submissions, and hands on how many are done.
+/// The rows of all submissions, and the groups of those that are the same but for names.
+pub(super) struct Rows {
+    pub(super) rows: Vec<Row>,
+    pub(super) groups: Vec<Vec<String>>,
+}
+
+/// Grades submissions; `step` is called for each.
 pub(super) fn rows(
     args: &Grade,
     exercise: &Exercise,
     submissions: &[Submission],
     mut step: impl FnMut(),
-) -> Result<Vec<Row>, Failure> {
+) -> Result<Rows, Failure> {
     let mut rows = Vec::new();
     let one = |number: usize| {
         let Some(submission) = submissions.get(number) else {
@@ -82,8 +83,8 @@ pub(super) fn rows(
         rows.push(row);
         Ok(())
     })?;
-    find_like(exercise, &mut rows);
-    Ok(rows)
+    let groups = find_like(exercise, &mut rows);
+    Ok(Rows { rows, groups })
 }
 
 /// Grades a submission. A panic is a mistake of G7; all others are graded nevertheless.
@@ -115,26 +116,32 @@ fn work(args: &Grade, exercise: &Exercise, source: Source) -> Graded {
     judge(exercise, source, &mut Limits { test: args.timeout, questions: &end, bytes, clock: &mut clock })
 }
 
-/// Notes for each submission which others, solutions of the exercise among them, are the same but for names.
-fn find_like(exercise: &Exercise, rows: &mut [Row]) {
+/// The groups of submissions that are the same but for names, solutions of the exercise among them. Each row is told the
+/// others of its group.
+fn find_like(exercise: &Exercise, rows: &mut [Row]) -> Vec<Vec<String>> {
     let own = |name: &str, source: &Source| (name.to_owned(), Shape::of(source, &exercise.template));
     let mut all = vec![own(TEMPLATE, &exercise.template), own(MODEL, &exercise.model)];
     for (path, bytes) in &exercise.wrong {
-        let nothing = |_: &str| Err(raw(""));
-        let source = exercise.submission(path, bytes.clone(), &mut { nothing });
+        let source = exercise.submission(path, bytes.clone(), &mut no_file);
         all.push(own(path, &source));
     }
     let first = all.len();
     all.extend(rows.iter_mut().map(|row| (row.name.clone(), row.shape.take())));
     let (names, shapes): (Vec<String>, Vec<Option<Shape>>) = all.into_iter().unzip();
-    let mut like: BTreeMap<usize, Vec<String>> = BTreeMap::new();
-    for group in groups(&shapes) {
-        for number in &group {
-            let others = group.iter().filter(|other| *other != number);
-            like.insert(*number, others.filter_map(|other| names.get(*other).cloned()).collect());
+    let mut found = Vec::new();
+    for group in groups(&shapes).iter().filter(|group| group.iter().any(|number| *number >= first)) {
+        let named = |of: &[usize]| of.iter().filter_map(|n| names.get(*n).cloned()).collect::<Vec<_>>();
+        for number in group {
+            let others: Vec<usize> = group.iter().copied().filter(|other| other != number).collect();
+            let row = number.checked_sub(first).and_then(|number| rows.get_mut(number));
+            row.into_iter().for_each(|row| row.like = named(&others));
         }
+        found.push(named(group));
     }
-    for (number, row) in rows.iter_mut().enumerate() {
-        row.like = like.remove(&(first + number)).unwrap_or_default();
-    }
+    found
+}
+
+/// A solution of the exercise brings no files.
+fn no_file(_: &str) -> Result<Vec<u8>, Said> {
+    Err(say!("a solution uses the library and the files of the template alone"))
 }

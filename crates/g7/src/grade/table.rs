@@ -2,10 +2,10 @@
 
 use std::io::{self, Write};
 
-use g7_grade::{Answered, Exercise, Graded, Mark};
+use g7_grade::{Answered, Ended, Exercise, Graded, Mark};
 use g7_model::{Said, say};
 
-use super::rows::Row;
+use super::rows::{Row, Rows};
 use crate::failure::raw;
 use crate::message::told;
 use crate::style;
@@ -52,8 +52,9 @@ fn summary(graded: &Graded) -> Said {
     )
 }
 
-/// Prints the table.
-pub(super) fn rows(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
+/// Prints the table, and the groups of charts that are the same.
+pub(super) fn rows(out: &mut dyn Write, all: &Rows) -> io::Result<()> {
+    let rows = &all.rows;
     let width = rows.iter().map(|r| r.name.chars().count()).max().unwrap_or(0).min(40);
     let marks: Vec<String> = rows.iter().map(|r| told(&r.mark().said())).collect();
     let wide = marks.iter().map(|m| m.chars().count()).max().unwrap_or(0);
@@ -66,6 +67,12 @@ pub(super) fn rows(out: &mut dyn Write, rows: &[Row]) -> io::Result<()> {
         for note in notes(row) {
             writeln!(out, "  {note}")?;
         }
+    }
+    if !all.groups.is_empty() {
+        writeln!(out)?;
+    }
+    for group in &all.groups {
+        writeln!(out, "{}", told(&alike(group)))?;
     }
     let passed = rows.iter().filter(|r| r.mark() == Mark::Passed).count();
     writeln!(out, "\n{}", told(&say!("submissions that passed: {passed} of {}", rows.len())))
@@ -93,17 +100,17 @@ pub(super) fn notes(row: &Row) -> Vec<String> {
             notes.extend(errors(graded));
             notes.extend(graded.changed.iter().map(|c| format!("{}: {}", c.place, told(&c.what))));
             notes.extend(graded.lacks.iter().map(|l| format!("{}: {}", l.place, told(&l.said()))));
+            // A name that is missing was told above.
+            let is_told = |blocked: bool| blocked && !graded.lacks.is_empty();
             if let Some(test) = graded.first_failing()
                 && let Some(why) = test.ended.why()
+                && !is_told(matches!(test.ended, Ended::Blocked { .. }))
             {
                 notes.push(format!("{}: {}", test.ended.place().unwrap_or(&test.place), told(&why)));
             }
-            let open = graded.questions.iter().filter(|q| !q.is_proved());
+            let open = graded.questions.iter().filter(|q| !q.is_proved() && !is_told(q.verdict.is_none()));
             notes.extend(open.map(|q| format!("{}: {}: {}", q.place, told(&answer(q)), told(&q.claim))));
         }
-    }
-    if !row.like.is_empty() {
-        notes.push(told(&alike(row)));
     }
     notes
 }
@@ -116,9 +123,9 @@ pub(super) fn answer(question: &Answered) -> Said {
     }
 }
 
-/// The sentence about others that are the same.
-pub(super) fn alike(row: &Row) -> Said {
-    say!("the same but for names: {}", raw(row.like.join(", ")))
+/// The sentence about charts that are the same.
+pub(super) fn alike(group: &[String]) -> Said {
+    say!("the same but for names: {}", raw(group.join(", ")))
 }
 
 /// The first errors of the charts, each with its place.
