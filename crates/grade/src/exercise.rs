@@ -67,7 +67,7 @@ impl Exercise {
     ///
     /// # Errors
     ///
-    /// What is wrong with it, as far as that shows without grading the model solution ([`check`](crate::check)).
+    /// Its mistakes, as far as they show without grading the model solution ([`check`](crate::check)).
     pub fn read(files: &Files, name: &str) -> Result<Exercise, Vec<Fault>> {
         let shown = |path: &str| if name.is_empty() { path.to_owned() } else { format!("{name}/{path}") };
         let mut faults = Vec::new();
