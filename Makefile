@@ -35,7 +35,7 @@ PAGE := $(shell find web/src docs/book/src/problems docs/book/fr docs/book/pt cr
 EXTENSION := editors/vscode
 EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
 
-.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check prove-bench prove-table oscat interop online-bench soak faults book blocks fuzz help FORCE
+.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check grade-bench prove-bench prove-table oscat interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -256,6 +256,11 @@ bench:
 bench-check:
 	@$(call debian,valgrind,valgrind)
 	benches/instructions.sh
+
+## 200 submissions of an exercise, graded, with the time
+grade-bench:
+	cargo build --release --quiet --package g7
+	G7=$(abspath $(or $(CARGO_TARGET_DIR),target))/release/g7 benches/grade.sh
 
 ## the prover beside ABC, rIC3, Spin, Stateright and LTSmin: answers, seconds, memory, ratios (ROWS="timers equivalence" for some, LIMIT=… seconds for each answer)
 prove-bench: checkers

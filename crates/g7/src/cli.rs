@@ -115,6 +115,8 @@ pub(crate) enum Command {
     History(crate::history::History),
     /// Run the tests of charts in virtual time.
     Test(Test),
+    /// Grade the charts that students hand in, by the tests and questions of an exercise.
+    Grade(crate::grade::Grade),
     /// Ask what charts can and cannot do, over all runs.
     Prove(Prove),
     /// Compare two charts, or one under two profiles, over all runs.
@@ -155,11 +157,15 @@ pub(crate) enum Command {
 Examples:
   g7 new tank
   g7 new ~/plants/conveyor && g7 run ~/plants/conveyor
+  g7 new exercise lamp        an exercise that checks itself, for students (g7 grade)
 
 A folder that holds something already is left alone.")]
 pub(crate) struct New {
-    /// The folder to create.
+    /// The folder to create; `exercise` makes an exercise, in the folder behind it.
     pub(crate) folder: PathBuf,
+    /// With `exercise`: its folder [default: exercise].
+    #[arg(value_name = "FOLDER")]
+    pub(crate) exercise: Option<PathBuf>,
 }
 
 #[derive(Args, Debug)]

@@ -24,7 +24,7 @@ pub(crate) enum Failure {
 
 impl Failure {
     /// The line, for each language.
-    fn said(&self) -> Said {
+    pub(crate) fn said(&self) -> Said {
         match self {
             Failure::Read(path, e) => say!("cannot read {}: {}", show(path), plain(e)),
             Failure::Write(path, e) => {

@@ -40,7 +40,7 @@ pub(crate) fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
 
 /// Marks in the files that commands write again and again: pictures, records, reports. A file with one of
 /// these is replaced unasked.
-const OURS: [&[u8]; 9] = [
+const OURS: [&[u8]; 11] = [
     b"<g class=\"g7\">",
     b"<svg xmlns=\"http://www.w3.org/2000/svg\" class=\"g7-graph\"",
     b"<mxfile host=\"g7\">",
@@ -50,7 +50,11 @@ const OURS: [&[u8]; 9] = [
     b"tEXtSoftware\0g7",
     b"digraph situations {",
     b"\"tool\": \"g7 graph\"",
+    b"\"tool\": \"g7 grade\"",
+    GRADES.as_bytes(),
 ];
+/// The first columns of the table of `g7 grade`.
+pub(crate) const GRADES: &str = "submission,result,tests passed,";
 /// The beginning of a trace.
 const TRACE: &[u8] = b"time,";
 /// The end of a PDF that G7 wrote; readers of PDF take it as a comment.
@@ -224,7 +228,8 @@ pub(crate) fn met(path: &Path) -> Met {
     if is_chart(path) && path.is_file() { Met::Chart } else { Met::Other }
 }
 
-fn list(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
+/// The entries of a folder, by their names.
+pub(crate) fn list(folder: &Path) -> Result<Vec<PathBuf>, Failure> {
     let fail = |e| Failure::Read(folder.to_path_buf(), e);
     let entries: io::Result<Vec<_>> = fs::read_dir(folder).map_err(fail)?.collect();
     let mut paths: Vec<PathBuf> = entries.map_err(fail)?.iter().map(fs::DirEntry::path).collect();

@@ -30,6 +30,7 @@ mod files;
 mod fmt;
 mod fmu;
 mod generate;
+mod grade;
 mod history;
 mod import;
 mod journal;
@@ -52,6 +53,7 @@ mod scratch;
 mod serve;
 #[cfg(target_os = "linux")]
 mod service;
+mod share;
 mod shell;
 mod sole;
 mod sources;
@@ -103,6 +105,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Plant(args) => plant::plant(args),
         Command::History(args) => history::history(args),
         Command::Test(args) => testing::test(args),
+        Command::Grade(args) => grade::grade(args),
         Command::Prove(args) => prove::prove(args),
         Command::Compare(args) => prove::compare(args),
         Command::Graph(args) => prove::graph(args),

@@ -18,11 +18,18 @@ use crate::{files, used};
 pub(crate) fn load(path: &Path, id: u32) -> Result<Source, Failure> {
     let name = if path == Path::new("-") { "<stdin>".to_owned() } else { path.display().to_string() };
     let mut source = Source::new(&name, files::read(path)?, id);
-    if path != Path::new("-") && !files::is_chart(path) && is_of_no_form(&source) {
-        return Err(Failure::Form { name: source.name, why: no_form() });
+    if path != Path::new("-")
+        && let Err(why) = refuse_formless(&source, path)
+    {
+        return Err(Failure::Form { name: source.name, why });
     }
     used::link(&mut source, path);
     Ok(source)
+}
+
+/// Refuses a file that is neither a .g7 file nor one of another tool.
+pub(crate) fn refuse_formless(source: &Source, path: &Path) -> Result<(), Said> {
+    if !files::is_chart(path) && is_of_no_form(source) { Err(no_form()) } else { Ok(()) }
 }
 
 /// Why a file is of no form, without its name.

@@ -17,7 +17,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use g7_model::linked::{Linked, MOST_FILES, linked, unusable};
-use g7_model::{Document, FileId, Problem, Said, Severity, Span, Use, say};
+use g7_model::{Document, FileId, Item, Problem, Said, Severity, Span, Use, say};
 
 use crate::source::{Links, Other, Source};
 
@@ -91,6 +91,32 @@ impl Source {
         self.link(&mut |path| {
             let known = other.links.others.iter().find(|o| !o.library && o.path == path);
             known.map(|o| o.source.bytes.clone()).ok_or_else(|| say!("it was not read"))
+        });
+        self
+    }
+}
+
+impl Source {
+    /// The charts of this file with plants, tests and properties of others behind its own: what somebody hands in, and
+    /// what somebody else asks of it. Places in these items lead to their own files.
+    #[must_use]
+    pub fn asked_by(mut self, others: &[(Arc<Source>, Vec<Item>)]) -> Source {
+        let through = Span { file: self.id(), start: 0, end: 0 };
+        for (source, items) in others {
+            for document in [Some(&mut self.document), self.links.whole.as_mut()].into_iter().flatten() {
+                document.items.extend(items.iter().cloned());
+            }
+            let (path, source) = (source.name.clone(), Arc::clone(source));
+            self.links.others.push(Other { path, library: false, source, through });
+        }
+        self
+    }
+
+    /// The charts of this file without its own plants, tests and properties.
+    #[must_use]
+    pub fn charts_alone(mut self) -> Source {
+        self.amend(|document| {
+            document.items.retain(|i| !matches!(i, Item::Plant(_) | Item::Test(_) | Item::Prove(_)));
         });
         self
     }

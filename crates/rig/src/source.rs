@@ -8,7 +8,7 @@ use g7_model::{Document, FileId, Item, Problem, Said, Scenario, Severity, Span, 
 use g7_syntax::{Marks, Tree};
 
 /// A file that was read.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Source {
     /// The name used in messages, on one line.
     pub name: String,
@@ -228,7 +228,7 @@ impl Source {
 }
 
 /// A file that the head uses, or one that such a file uses.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Other {
     /// Its path from the folder of the head; of a part of the library, its name.
     pub path: String,
@@ -241,7 +241,7 @@ pub struct Other {
 }
 
 /// All that a file uses.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Links {
     pub(crate) others: Vec<Other>,
     /// The head with the items of all others; none if it uses no file.

@@ -41,6 +41,7 @@ const ALLOWED: &[Arrows] = &[
         Some(&["syn"]),
     ),
     ("verify", &["g7-model", "g7-engine", "g7-compile", "g7-equations", "g7-rig", "g7-sat"], Some(&[])),
+    ("grade", &["g7-model", "g7-syntax", "g7-compile", "g7-host", "g7-rig", "g7-verify"], Some(&[])),
     // Natively alone: it needs sockets, files and threads.
     ("hosts", &["g7-engine", "g7-verify"], Some(&["thiserror", "timely_bytes", "timely_communication"])),
     // It knows nothing of charts; foreign functions are called here alone.
@@ -98,6 +99,7 @@ const ALLOWED: &[Arrows] = &[
             "g7-store",
             "g7-draw",
             "g7-edit",
+            "g7-grade",
             "g7-ide",
             "g7-rig",
             "g7-page",

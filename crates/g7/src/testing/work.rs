@@ -1,8 +1,7 @@
 //! The files of `g7 test`, shared among threads; results come in the order of the files.
 
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::sync::mpsc::channel;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 use g7_host::WallClock;
 use g7_rig::testing::{self, Coverage, Options, Outcome, Unproved};
@@ -10,7 +9,7 @@ use g7_rig::testing::{self, Coverage, Options, Outcome, Unproved};
 use crate::cli::Test;
 use crate::failure::Failure;
 use crate::report::{self, Tally};
-use crate::sources;
+use crate::{share, sources};
 
 /// The results of a file.
 pub(super) struct Done {
@@ -28,44 +27,11 @@ pub(super) struct Done {
 pub(super) fn share(
     args: &Test,
     paths: &[PathBuf],
-    mut take: impl FnMut(Done) -> Result<(), Failure>,
+    take: impl FnMut(Done) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
-    let (next, failed, given_up) = (AtomicUsize::new(0), AtomicBool::new(false), AtomicBool::new(false));
-    let threads = args
-        .jobs
-        .map_or_else(|| std::thread::available_parallelism().map_or(1, std::num::NonZero::get), usize::from);
-    let (give, results) = channel();
-    std::thread::scope(|scope| {
-        for _ in 0..threads.min(paths.len()).max(1) {
-            let give = give.clone();
-            let (next, failed, given_up) = (&next, &failed, &given_up);
-            scope.spawn(move || {
-                while !given_up.load(Ordering::Relaxed) {
-                    let number = next.fetch_add(1, Ordering::Relaxed);
-                    let Some(path) = paths.get(number) else { break };
-                    if give.send((number, one(args, path, failed))).is_err() {
-                        break;
-                    }
-                }
-            });
-        }
-        // Only the threads hold a sender now, so `recv` ends when the last of them has ended.
-        drop(give);
-        let mut waiting = std::collections::BTreeMap::new();
-        let mut taken = 0;
-        while taken < paths.len() {
-            let Ok((number, done)) = results.recv() else { break };
-            waiting.insert(number, done);
-            while let Some(done) = waiting.remove(&taken) {
-                taken += 1;
-                if let Err(failure) = done.and_then(&mut take) {
-                    given_up.store(true, Ordering::Relaxed);
-                    return Err(failure);
-                }
-            }
-        }
-        Ok(())
-    })
+    let failed = AtomicBool::new(false);
+    let of = |number: usize| paths.get(number).map(PathBuf::as_path).unwrap_or(Path::new(""));
+    share::in_order(args.jobs, paths.len(), |number| one(args, of(number), &failed), take)
 }
 
 fn one(args: &Test, path: &Path, failed: &AtomicBool) -> Result<Done, Failure> {

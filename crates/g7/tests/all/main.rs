@@ -11,6 +11,7 @@ mod field;
 mod files;
 mod fixes;
 mod fmu;
+mod grade;
 mod guard;
 mod history;
 mod hosts;
