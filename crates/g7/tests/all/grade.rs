@@ -74,7 +74,7 @@ fn a_new_exercise_is_right_in_each_language() {
 fn each_submission_is_graded_as_what_it_is() {
     let stays = RIGHT.replace("  1 -> 0 when ↑button\n", "");
     let fitted = RIGHT.replace("  1 -> 0 when ↑button\n", "  step 2 { N lamp }\n  1 -> 2 when ↑button\n");
-    let changed = RIGHT.replace("output lamp : BOOL", "output lamp : BOOL := TRUE");
+    let changed = RIGHT.replace("output lamp : BOOL", "output lamp : BOOL safe TRUE");
     let folder = with(&[
         ("right.g7", RIGHT),
         ("nothing.g7", "input button : BOOL\noutput lamp : BOOL\nchart Lamp { initial step 0 }\n"),
