@@ -73,7 +73,7 @@ test('a link carries the file to the last byte, and leaves the address clean', a
   assert.equal(new URL(page.url()).hash, '', 'the address does not bring the old text back');
   assert.equal(site.fetched?.length, asked, 'nothing was fetched from the page of the sender');
   assert.deepEqual(await tabs(page).allInnerTexts(), ['work/line.g7\nnot saved'], 'it is one unsaved file');
-  // What is changed here stays when the window is loaded again.
+  // A change that is made here stays when the window is loaded again.
   await page.getByRole('button', { name: 'Text', exact: true }).click();
   await page.locator('.cm-content').click();
   await page.keyboard.press('Control+Home');

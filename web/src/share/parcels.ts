@@ -1,4 +1,4 @@
-// What goes into a link of a file, and what becomes of a link that is opened.
+// The files of a link: which of them go into one, and where they go when it is opened.
 import { drafts } from '../lib/drafts.svelte';
 import { embedded } from '../lib/embedded';
 import { files, type OpenFile } from '../lib/files.svelte';
