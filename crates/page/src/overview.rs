@@ -143,7 +143,8 @@ pub(crate) fn overview(name: &str, file: &File) -> Overview {
 }
 
 fn pictures(document: &Document) -> Vec<String> {
-    let view = |item: &PlantItem| if let PlantItem::View(view) = item { Some(view.file.to_string()) } else { None };
+    let view =
+        |item: &PlantItem| if let PlantItem::View(view) = item { Some(view.file.to_string()) } else { None };
     g7_compile::plant::plants(document).flat_map(|p| &p.items).filter_map(view).collect()
 }
 
