@@ -32,7 +32,7 @@ chart Mixer {
   step 6 "draining" { N drain  P1 batches := batches + 1 }
   0 -> 1 when start and io_ok
   1 -> (2, 4) when high
-  2 -> 3 when 6s/X2
+  2 -> 3 when 30s/X2
   4 -> 5 when temperature >= 40.0
   (3, 5) -> 6 when TRUE
   6 -> 0 when not low

@@ -144,7 +144,7 @@ test('a changed chart is taken over while the machine runs, and taken back', asy
   await dialog.getByRole('alert').getByText(/mixer\.g7:\d+/).waitFor();
   await dialog.getByRole('button', { name: 'Cancel' }).click();
   // A step that is active is gone: the page asks first.
-  machine.edit((chart) => chart.replace('step 2 "stirring"', 'step 22 "mixing"').replace('1 -> (2, 4)', '1 -> (22, 4)').replace('2 -> 3 when 6s/X2', '22 -> 3 when 6s/X22'));
+  machine.edit((chart) => chart.replace('step 2 "stirring"', 'step 22 "mixing"').replace('1 -> (2, 4)', '1 -> (22, 4)').replace('2 -> 3 when 30s/X2', '22 -> 3 when 30s/X22'));
   await bar.getByRole('button', { name: 'Take over…' }).click();
   await dialog.getByRole('button', { name: 'Take over', exact: true }).click();
   await dialog.getByText('step `stirring` is active and no longer exists').or(dialog.getByText('step `2` is active and no longer exists')).waitFor();
@@ -152,7 +152,7 @@ test('a changed chart is taken over while the machine runs, and taken back', asy
   await dialog.getByRole('button', { name: 'Cancel' }).click();
   assert.match(await steps.innerText(), /stirring/);
   // Another time and another comment: the step goes on.
-  machine.edit((chart) => chart.replace('"stirring"', '"stirring slowly"').replace('6s/X2', '600s/X2').replace('"stirrer, turns a minute"', '"turns of the stirrer"'));
+  machine.edit((chart) => chart.replace('"stirring"', '"stirring slowly"').replace('30s/X2', '600s/X2').replace('"stirrer, turns a minute"', '"turns of the stirrer"'));
   await bar.getByRole('button', { name: 'Take over…' }).click();
   await dialog.getByRole('button', { name: 'Take over', exact: true }).click();
   await dialog.waitFor({ state: 'hidden' });

@@ -198,7 +198,7 @@ async function operator(b: Browser): Promise<void> {
     await page.waitForTimeout(300);
     assert.deepEqual(page.errors, [], 'operator');
     await take(page, OPERATOR, 120_000);
-    machine.edit((chart) => chart.replace('step 2 "stirring"', 'step 22 "mixing"').replace('(2, 4)', '(22, 4)').replace('2 -> 3 when 6s/X2', '22 -> 3 when 6s/X22'));
+    machine.edit((chart) => chart.replace('step 2 "stirring"', 'step 22 "mixing"').replace('(2, 4)', '(22, 4)').replace('2 -> 3 when 30s/X2', '22 -> 3 when 30s/X22'));
     await page.getByRole('button', { name: 'Take over…' }).click();
     await page.getByRole('button', { name: 'Take over', exact: true }).click();
     await page.getByText('This would be lost').waitFor();
