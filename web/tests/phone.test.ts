@@ -201,7 +201,7 @@ for (const [name, size] of [['upright', UPRIGHT], ['lying', LYING]] as const) {
       all.filter((e) => e.getBoundingClientRect().right > innerWidth).map((e) => e.getAttribute('aria-label')),
     );
     assert.deepEqual(beyond, []);
-    // The name and the value stand in one line.
+    // The name and the value are on one line.
     const [of, value] = await Promise.all(['Name: go', 'Initial value: go'].map((label) => box(page.getByRole('textbox', { name: label, exact: true }))));
     assert.ok(Math.abs((of?.y ?? 0) - (value?.y ?? 1e3)) < 4);
     await page.getByRole('textbox', { name: 'Comment: go' }).fill('the green button');

@@ -127,9 +127,9 @@ test('a run tells what changed, with at least a second between two messages', as
 
 test('a new problem is told, and that there is none any more', async () => {
   for (const [language, none] of [
-    ['en', 'No problems: this file is ready to run.'],
-    ['fr', 'Aucun problème : ce fichier est prêt à tourner.'],
-    ['pt', 'Sem problemas: este ficheiro está pronto a correr.'],
+    ['en', 'No problems: this file is ready to run'],
+    ['fr', 'Aucun problème : ce fichier est prêt à tourner'],
+    ['pt', 'Sem problemas: este ficheiro está pronto a correr'],
   ] as const) {
     const page = await openWith(b, site, 'line.g7', { language });
     const heard = await listen(page);
@@ -141,7 +141,9 @@ test('a new problem is told, and that there is none any more', async () => {
     await drawn(page);
     await page.locator('.sheet').focus();
     await page.keyboard.press('Control+z');
-    await until(async () => (await heard()).at(-1)?.text === none, none);
+    // The proofs may have ended in the same second, and are then told with it.
+    await until(async () => (await heard()).at(-1)?.text.split('. ').includes(none) === true, none);
+    assert.ok((await heard()).every((m) => !m.text.includes('..')), 'each sentence has one end');
     await done(page);
   }
 });

@@ -9,15 +9,16 @@ use crate::failure::{Failure, refused};
 /// Stack of a thread: as large as that of the main thread on most systems.
 const STACK: usize = 8 << 20;
 
-/// Does the works `0..count` on as many threads as `jobs` says, or else as there are processors, and hands each result on.
+/// Does `one` with each work, on as many threads as `jobs` says or else as there are processors, and hands the results to
+/// `take`.
 ///
 /// # Errors
 ///
 /// The first failure of a work or of `take`; no further work is begun then.
-pub(crate) fn in_order<T: Send>(
+pub(crate) fn in_order<W: Sync, T: Send>(
     jobs: Option<u16>,
-    count: usize,
-    one: impl Fn(usize) -> Result<T, Failure> + Sync,
+    works: &[W],
+    one: impl Fn(&W) -> Result<T, Failure> + Sync,
     mut take: impl FnMut(T) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let (next, given_up) = (AtomicUsize::new(0), AtomicBool::new(false));
@@ -25,24 +26,25 @@ pub(crate) fn in_order<T: Send>(
     let threads = jobs.map_or_else(all, usize::from);
     let (give, results) = channel();
     std::thread::scope(|scope| {
-        for _ in 0..threads.min(count).max(1) {
+        for _ in 0..threads.min(works.len()).max(1) {
             let give = give.clone();
             let (next, given_up, one) = (&next, &given_up, &one);
-            let work = move || {
+            let thread = move || {
                 while !given_up.load(Ordering::Relaxed) {
                     let number = next.fetch_add(1, Ordering::Relaxed);
-                    if number >= count || give.send((number, one(number))).is_err() {
+                    let Some(work) = works.get(number) else { break };
+                    if give.send((number, one(work))).is_err() {
                         break;
                     }
                 }
             };
-            std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, work).map_err(refused)?;
+            std::thread::Builder::new().stack_size(STACK).spawn_scoped(scope, thread).map_err(refused)?;
         }
         // Only the threads hold a sender now, so `recv` ends when the last of them has ended.
         drop(give);
         let mut waiting = std::collections::BTreeMap::new();
         let mut taken = 0;
-        while taken < count {
+        while taken < works.len() {
             let Ok((number, done)) = results.recv() else { break };
             waiting.insert(number, done);
             while let Some(done) = waiting.remove(&taken) {

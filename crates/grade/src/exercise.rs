@@ -4,7 +4,7 @@
 //! statement.md  hints.md        texts, also .fr.md and .pt.md
 //! template.g7                   what the student gets: declarations, locked parts, plant, the tests that the student sees
 //! model.g7                      the model solution, with the tests that the student does not see
-//! wrong/*.g7                    wrong solutions, each of which some test must catch
+//! wrong/*.g7                    wrong solutions; each must fail a test or break a question
 //! ```
 //!
 //! Mistakes of the exercise are [`Fault`]s, each with its place; an exercise with one of them grades nobody.
@@ -25,10 +25,8 @@ pub const TEMPLATE: &str = "template.g7";
 pub const MODEL: &str = "model.g7";
 /// The folder of the wrong solutions, as their paths begin.
 pub const WRONG: &str = "wrong/";
-/// The files and folders that no student may be given: they hold the hidden tests and the solutions.
-pub const HIDDEN_FROM: [&str; 2] = [MODEL, WRONG];
 
-/// The numbers of template and model solution in places; a submission and the files that it uses have smaller ones.
+/// The file numbers of the template and the model solution. A submission and the files that it uses have smaller ones.
 const TEMPLATE_ID: u32 = 0x4000_0000;
 const MODEL_ID: u32 = 0x6000_0000;
 
@@ -95,14 +93,8 @@ impl Exercise {
         };
         let (template, model) = (read(TEMPLATE, TEMPLATE_ID), read(MODEL, MODEL_ID));
         let (Some(template), Some(model)) = (template, model) else { return Err(faults) };
-        faults.extend(errors(&template));
-        faults.extend(
-            model
-                .read_problems()
-                .iter()
-                .filter(|p| p.severity() == Severity::Error)
-                .map(|p| Fault { place: model.place(p.at), what: p.what.clone() }),
-        );
+        faults.extend(faulty(&template));
+        faults.extend(errors(model.read_problems()).iter().map(|p| problem(&model, p)));
         let (locked, idle) = locked::locked(&template);
         faults.extend(idle.into_iter().map(|at| Fault {
             place: template.place(at),
@@ -159,8 +151,14 @@ impl Exercise {
     }
 }
 
+/// The errors among some problems.
+pub(crate) fn errors(mut problems: Vec<Problem>) -> Vec<Problem> {
+    problems.retain(|p| p.severity() == Severity::Error);
+    problems
+}
+
 /// The errors of the charts, plants, tests and properties of a file.
-fn errors(source: &Source) -> Vec<Fault> {
+fn faulty(source: &Source) -> Vec<Fault> {
     let mut problems = source.read_problems();
     if !source.is_broken() {
         match testing::problems(source, None) {
@@ -168,7 +166,7 @@ fn errors(source: &Source) -> Vec<Fault> {
             Err(why) => return vec![Fault { place: source.name.clone(), what: why.said() }],
         }
     }
-    problems.retain(|p| p.severity() == Severity::Error);
+    problems = errors(problems);
     problems.dedup();
     problems.iter().map(|p| problem(source, p)).collect()
 }

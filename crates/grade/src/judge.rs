@@ -8,19 +8,19 @@
 //! # What must hold
 //!
 //! - A test that cannot be asked of a submission, because a name is missing, has failed; all others run.
-//! - A test that takes too long is ended and has failed; so does a question that is not decided stay open.
+//! - A test that takes too long is ended and has failed. A question that is not decided in time stays open.
 
 use std::collections::BTreeSet;
 
 use g7_host::Clock;
-use g7_model::{Item, Nanos, Problem, Property, PropertyKind, Said, Severity, Span, say};
+use g7_model::{Item, Nanos, Problem, Property, PropertyKind, Said, Span, say};
 use g7_rig::testing::{self, Coverage, Defect, Options, Outcome};
 use g7_rig::{Error, Source};
 use g7_verify::{Budget, Evidence, Model, Open, Question, Verdict, answer, ask, ask_with, words};
 
-use crate::exercise::Exercise;
+use crate::exercise::{Exercise, errors};
 use crate::locked::{self, Changed};
-use crate::needs::{self, Lack, covers};
+use crate::needs::{self, Lack};
 
 /// True when a search is to end.
 pub type Stop = Box<dyn Fn() -> bool + Sync>;
@@ -29,7 +29,7 @@ pub type Stop = Box<dyn Fn() -> bool + Sync>;
 pub struct Limits<'a> {
     /// The real time of a test.
     pub test: Nanos,
-    /// Begins the time for the questions.
+    /// Starts the clock of the questions; what it returns says when their time is over.
     pub questions: &'a dyn Fn() -> Stop,
     /// Most bytes and states that a search keeps.
     pub bytes: usize,
@@ -37,7 +37,7 @@ pub struct Limits<'a> {
     pub clock: &'a mut dyn Clock,
 }
 
-/// The result of a submission in one word.
+/// The result of a submission, in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Mark {
     /// All tests passed, and nothing is refuted.
@@ -179,9 +179,14 @@ pub struct Graded {
 }
 
 impl Graded {
-    /// The number of tests that passed, and of all.
+    /// The number of tests that passed, and the number of all tests.
     pub fn passed(&self) -> (usize, usize) {
         (self.tests.iter().filter(|t| t.ended.is_passed()).count(), self.tests.len())
+    }
+
+    /// The number of questions that are proved, and the number of all questions.
+    pub fn proved(&self) -> (usize, usize) {
+        (self.questions.iter().filter(|q| q.is_proved()).count(), self.questions.len())
     }
 
     /// The first test that did not pass.
@@ -218,7 +223,7 @@ pub fn judge(exercise: &Exercise, submission: Source, limits: &mut Limits<'_>) -
     match tests {
         Ok(tests) => graded.tests = tests,
         Err(problems) => {
-            // Of charts that cannot be read, nobody knows what is missing.
+            // Charts that cannot be read may still have the names and parts, so nothing is said of these.
             return Graded { problems, lacks: Vec::new(), changed: Vec::new(), ..graded };
         }
     }
@@ -240,11 +245,6 @@ fn mark(graded: &Graded) -> Mark {
         (false, false) if !graded.changed.is_empty() => Mark::Changed,
         (false, false) => Mark::Passed,
     }
-}
-
-fn errors(mut problems: Vec<Problem>) -> Vec<Problem> {
-    problems.retain(|p| p.severity() == Severity::Error);
-    problems
 }
 
 /// True for a place in template or model solution, of a source that has these beside its own files.
@@ -280,8 +280,7 @@ fn tested(
         let before = blocked.len();
         for test in runs.tests() {
             let plant = test.plant.as_ref().and_then(|name| plant(&runs, &name.text));
-            let of_it =
-                |p: &&Problem| covers(test.at.0, p.at) || plant.is_some_and(|plant| covers(plant, p.at));
+            let of_it = |p: &&Problem| test.at.0.holds(p.at) || plant.is_some_and(|plant| plant.holds(p.at));
             if let Some(problem) = problems.iter().find(of_it) {
                 blocked.push((test.at.0, problem.clone()));
             }
@@ -369,7 +368,7 @@ fn answered(source: &Source, exercise: &Exercise, limits: &Limits<'_>) -> Vec<An
             };
             let mut wrong: Vec<(Span, Said)> = Vec::new();
             for property in asks.document.properties().filter(|p| is_mine(p)) {
-                let problem = problems.iter().find(|p| covers(property.at.0, p.at));
+                let problem = problems.iter().find(|p| property.at.0.holds(p.at));
                 wrong.extend(problem.map(|p| (property.at.0, p.what.clone())));
             }
             if wrong.is_empty() {

@@ -28,7 +28,7 @@ mod shape;
 mod texts;
 
 pub use check::check;
-pub use exercise::{Exercise, Fault, HIDDEN_FROM, MODEL, TEMPLATE, WRONG};
+pub use exercise::{Exercise, Fault, MODEL, TEMPLATE, WRONG};
 pub use judge::{Answered, Ended, Graded, Limits, Mark, Stop, Tested, judge};
 pub use locked::Changed;
 pub use needs::Lack;

@@ -26,7 +26,7 @@ pub struct Changed {
     pub what: Said,
 }
 
-/// The locked parts of a template, and the notes behind which nothing stands.
+/// The locked parts of a template, and the notes that lock nothing.
 pub(crate) fn locked(template: &Source) -> (Vec<Locked>, Vec<Span>) {
     let document = &template.document;
     let mut found: Vec<Locked> = document.items.iter().filter(|i| is_setting(i)).flat_map(parts).collect();
@@ -64,7 +64,7 @@ fn is_mark(note: &Note) -> bool {
     text.strip_prefix("locked").is_some_and(|rest| rest.trim().is_empty() || rest.starts_with(':'))
 }
 
-/// Plants, tests and properties are those of the exercise anyway.
+/// True for plants, tests and properties: a submission cannot change these, because the exercise brings its own.
 pub(crate) fn is_of_the_exercise(item: &Item) -> bool {
     matches!(item, Item::Plant(_) | Item::Test(_) | Item::Prove(_))
 }
@@ -96,7 +96,7 @@ fn parts(item: &Item) -> Vec<Locked> {
     }
 }
 
-/// A declaration for each of its names. What is written for the reader of the text is no part of it.
+/// One declaration for each name. The comment is left out, because it is not locked.
 fn singles(all: &VarDecl) -> impl Iterator<Item = VarDecl> {
     all.names.iter().map(|name| VarDecl { names: vec![name.clone()], comment: None, ..all.clone() })
 }
@@ -123,7 +123,7 @@ pub(crate) fn changed(locked: &[Locked], template: &Document, submission: &Sourc
             }),
         }
     }
-    // A setting that the template leaves out is locked too: the usual one is meant.
+    // A setting that the template does not have is locked at its default value.
     for there in own.iter().filter(|o| o.key.0 == "setting") {
         let in_template = template.items.iter().flat_map(parts).any(|t| t.key == there.key);
         if !in_template && !is_usual(&there.item) {
@@ -137,7 +137,7 @@ pub(crate) fn changed(locked: &[Locked], template: &Document, submission: &Sourc
     found
 }
 
-/// True for a setting that says what holds without it.
+/// True for a setting with its default value.
 fn is_usual(item: &Item) -> bool {
     match item {
         Item::Profile(p) => *p == g7_model::Profile::default(),

@@ -47,7 +47,7 @@ pub(crate) fn needs(template: &Source, model: &Source, asked: &[(Arc<Source>, Ve
     let mut found: BTreeMap<Definition, String> = BTreeMap::new();
     for (source, items) in asked {
         let known = references(if source.id() == model.id() { model.whole() } else { template.whole() });
-        let within = |at: Span| items.iter().any(|i| covers(i.at(), at));
+        let within = |at: Span| items.iter().any(|i| i.at().holds(at));
         for one in known.all().iter().filter(|u| within(u.at) && is_of_charts(&u.definition)) {
             found.entry(one.definition.clone()).or_insert_with(|| source.place(one.at));
         }
@@ -76,10 +76,6 @@ pub(crate) fn lacks(needs: &[Need], submission: &Source) -> Vec<Lack> {
 
 fn declared(known: &References) -> impl Iterator<Item = (&Definition, Span)> {
     known.all().iter().filter(|u| u.written == Written::Declared).map(|u| (&u.definition, u.at))
-}
-
-pub(crate) fn covers(outer: Span, inner: Span) -> bool {
-    outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
 }
 
 /// True for what charts declare; a plant declares its own names.

@@ -21,7 +21,7 @@ use g7_model::{Document, FileId, Item, Span};
 use g7_rig::Source;
 use g7_syntax::TokenKind;
 
-/// Most refinements of a comparison. Charts that need more, because very many of their parts look the same, are not
+/// The greatest number of refinements in a comparison. Charts with very many equal parts can need more; they are then not
 /// called alike.
 const MOST: usize = 2_000;
 
@@ -70,7 +70,7 @@ impl Shape {
         Some(shape)
     }
 
-    /// Notes for each name where it stands.
+    /// Fills `uses`: the places of each name.
     fn index(&mut self) {
         let mut uses: Vec<BTreeMap<usize, Vec<usize>>> = Vec::new();
         for (number, unit) in self.units.iter().enumerate() {
@@ -88,12 +88,12 @@ impl Shape {
         self.uses = uses.into_iter().map(|of| of.into_iter().collect()).collect();
     }
 
-    /// All names alike.
+    /// The first colours: all names have the same one.
     fn start(&self) -> Vec<u64> {
         vec![0; self.uses.len()]
     }
 
-    /// The units, each as a number under the colours of its names.
+    /// The hash of each unit, with the colours of its names in the place of the names.
     fn painted(&self, colours: &[u64]) -> Vec<u64> {
         let unit = |unit: &Vec<Word>| {
             let mut hasher = DefaultHasher::new();
@@ -108,7 +108,7 @@ impl Shape {
         self.units.iter().map(unit).collect()
     }
 
-    /// Tells names apart by where they stand, until that tells no more of them apart.
+    /// Gives names that stand at different places different colours, until the number of colours no longer grows.
     fn refine(&self, colours: &mut Vec<u64>) {
         let mut classes = 0;
         loop {
@@ -128,7 +128,7 @@ impl Shape {
         }
     }
 
-    /// All units together, in no order.
+    /// The hash of all units together, whatever their order.
     fn sum(&self, colours: &[u64]) -> u64 {
         let mut painted = self.painted(colours);
         painted.sort_unstable();
@@ -150,7 +150,8 @@ fn alike(a: &Shape, b: &Shape) -> bool {
     }
 }
 
-/// Refines both. Where names stay that look the same, one of `a` is paired with each of `b` in turn.
+/// Refines the colours of both charts. If several names still have one colour, the first of them in `a` is paired with each
+/// of them in `b` in turn, until one pair leads to equal charts.
 fn matched(a: &Shape, mut of_a: Vec<u64>, b: &Shape, mut of_b: Vec<u64>, left: &mut usize) -> bool {
     let Some(rest) = left.checked_sub(1) else { return false };
     *left = rest;

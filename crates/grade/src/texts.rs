@@ -7,7 +7,7 @@ use g7_model::Language;
 /// The files of a folder: their bytes by their paths from it, with `/` between the parts.
 pub type Files = BTreeMap<String, Vec<u8>>;
 
-/// A text by language, in the order of [`Language::ALL`]; the English one is there.
+/// One text in up to three languages, in the order of [`Language::ALL`]. `None`: the text is missing in that language.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Texts([Option<String>; 3]);
 
@@ -26,7 +26,7 @@ impl Texts {
         self.own(language).or(self.0[0].as_deref()).unwrap_or_default()
     }
 
-    /// The text in this language alone.
+    /// The text in this language, if there is one.
     pub fn own(&self, language: Language) -> Option<&str> {
         let texts = Language::ALL.iter().zip(&self.0);
         texts.filter(|(of, _)| **of == language).find_map(|(_, text)| text.as_deref())

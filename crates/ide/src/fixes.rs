@@ -129,7 +129,7 @@ fn gestures(file: &File, p: &Problem) -> Vec<(Said, Gesture)> {
     };
     let there = file.text().get(file.source.range(p.at)).unwrap_or("").trim_matches('`');
     if p.code == &codes::UNUSED_VARIABLE {
-        let of = document.charts().find(|c| ids::holds(c.at.0, p.at));
+        let of = document.charts().find(|c| c.at.0.holds(p.at));
         let name = of.map_or(there.to_owned(), |c| format!("{}.{there}", c.name.text));
         return vec![(say!("delete `{there}`"), Gesture::DeleteVariable { name })];
     }

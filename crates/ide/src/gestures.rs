@@ -26,7 +26,10 @@ pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
 
 /// Refuses bends that the drawing would not follow.
 fn fits(file: &File, edit: &Edit, link: &ItemId) -> Result<(), Said> {
-    let document = after(file, edit)?.document;
+    let document = match &edit.read {
+        Some(read) => &read.document,
+        None => &after(file, edit)?.document,
+    };
     let chart = document.charts().find(|c| *c.name.text == *link.chart);
     let followed = chart.is_some_and(|chart| {
         let end = |end: g7_draw::End| match end {
@@ -35,7 +38,7 @@ fn fits(file: &File, edit: &Edit, link: &ItemId) -> Result<(), Said> {
             }
             g7_draw::End::Transition(n) => g7_edit::End::Transition(n as usize),
         };
-        let links = g7_draw::placed(&document, chart, &Options::default()).links;
+        let links = g7_draw::placed(document, chart, &Options::default()).links;
         let found = links.into_iter().find(|l| Part::Link(end(l.from), end(l.to)) == link.part);
         found.is_some_and(|l| l.bends == Bends::Followed)
     });

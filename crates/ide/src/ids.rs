@@ -56,12 +56,12 @@ pub fn things(document: &Document) -> impl Iterator<Item = (Span, Thing<'_>)> {
 /// The innermost part that contains a place. The page calls this for each problem of a chart, so it is a binary
 /// search: the parts stand in the order of the text.
 pub fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
-    let chart = document.charts().find(|c| holds(c.at.0, place))?;
+    let chart = document.charts().find(|c| c.at.0.holds(place))?;
     let behind = chart.items.partition_point(|item| item.at().start <= place.start);
-    let found = chart.items.get(..behind)?.last().filter(|item| holds(item.at(), place))?;
+    let found = chart.items.get(..behind)?.last().filter(|item| item.at().holds(place))?;
     match found {
         ChartItem::Step(s) => {
-            let action = s.actions.iter().position(|a| holds(a.at.0, place));
+            let action = s.actions.iter().position(|a| a.at.0.holds(place));
             Some(action.map_or(Thing::Step(chart, s), |i| Thing::Action(chart, s, i)))
         }
         ChartItem::Transition(t) => {
@@ -69,11 +69,6 @@ pub fn at(document: &Document, place: Span) -> Option<Thing<'_>> {
         }
         _ => None,
     }
-}
-
-/// True if a place lies inside another.
-pub fn holds(outer: Span, inner: Span) -> bool {
-    outer.file == inner.file && outer.start <= inner.start && inner.end <= outer.end
 }
 
 #[cfg(test)]
@@ -94,7 +89,7 @@ mod tests {
         for start in 0..TEXT.len() as u32 {
             for end in [start, start + 1, start + 6] {
                 let place = Span { file: g7_model::FileId(0), start, end };
-                let inside = things(&document).filter(|(at, _)| holds(*at, place));
+                let inside = things(&document).filter(|(at, _)| at.holds(place));
                 let want = inside.min_by_key(|(at, _)| at.end - at.start).map(|(_, thing)| thing.id());
                 let got = at(&document, place).map(Thing::id);
                 assert_eq!(got, want, "{:?}", TEXT.get(start as usize..end as usize));

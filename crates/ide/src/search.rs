@@ -43,7 +43,7 @@ pub fn search(file: &File, what: &str) -> Vec<Hit> {
                 line: number + 1,
                 text: line.trim().chars().take(200).collect(),
                 id: ids::at(document, span).map(|t| t.id()),
-                chart: document.charts().find(|c| ids::holds(c.at.0, span)).map(|c| c.name.text.to_string()),
+                chart: document.charts().find(|c| c.at.0.holds(span)).map(|c| c.name.text.to_string()),
             });
             if hits.len() >= MOST {
                 return hits;

@@ -29,9 +29,9 @@ impl Layout {
 pub struct PlaceAt {
     /// The part of the drawing.
     pub what: Placed,
-    /// To the right, in hundredths of the drawing's unit.
+    /// The horizontal position, positive to the right, in hundredths of the drawing's unit.
     pub x: i32,
-    /// Downward, in hundredths of the drawing's unit.
+    /// The vertical position, positive downward, in hundredths of the drawing's unit.
     pub y: i32,
     /// The bends of a link behind the first one, which is at `x` and `y`; empty for anything else.
     pub then: Vec<(i32, i32)>,

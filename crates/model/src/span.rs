@@ -26,6 +26,11 @@ impl Span {
         Span { file: self.file, start: self.start.min(other.start), end: self.end.max(other.end) }
     }
 
+    /// True if it contains all of another span, in the same file.
+    pub fn holds(self, inner: Span) -> bool {
+        self.file == inner.file && self.start <= inner.start && inner.end <= self.end
+    }
+
     /// Its bytes in the text.
     pub fn bytes(self) -> std::ops::Range<usize> {
         self.start as usize..self.end as usize

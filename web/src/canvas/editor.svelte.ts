@@ -273,6 +273,11 @@ class Editor {
     return this.apply({ g: 'delete', ids: [...shell.selection], heal });
   }
 
+  /** True if nothing is typed, dragged or drawn. The handles of a bent link stay while one of them is dragged. */
+  get free(): boolean {
+    return !this.inplace && !this.moving && !this.linking && !this.marquee && !this.tool;
+  }
+
   /** Gives the way of the selected link back to the layout. */
   async straighten(): Promise<void> {
     const { one } = this;

@@ -6,6 +6,7 @@
 // from there by the same vector. So where symbols only move, the block gets another transformation and keeps its nodes:
 // a text that is made anew is set anew, which costs more than all else. A transformation of each symbol would cost
 // every move of the view.
+import { escaped } from '../lib/escape';
 import { placing, type Placed as Item } from '../lib/redrawn';
 import type { Scene } from './scene';
 
@@ -44,9 +45,6 @@ export type Namer = (item: Item) => string;
 export function domId(id: string): string {
   return `i:${id.replace(/\s/g, '%20')}`;
 }
-
-const escaped = (text: string) =>
-  text.replace(/[&<>"]/g, (c) => ({ '&': '&amp;', '<': '&lt;', '>': '&gt;', '"': '&quot;' })[c] ?? c);
 
 export class Surface {
   readonly root: SVGGElement;

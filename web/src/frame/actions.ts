@@ -3,6 +3,7 @@ import { drafts } from '../lib/drafts.svelte';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page } from '../lib/page';
+import { base } from '../lib/paths';
 import { Conflict, Gone, server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
 
@@ -42,7 +43,7 @@ export async function put(file: OpenFile, text: string): Promise<void> {
 
 /** Downloads the text as a file. */
 export function download(file: OpenFile): void {
-  handOut(file.name.slice(file.name.lastIndexOf('/') + 1), file.text, 'text/plain');
+  handOut(base(file.name), file.text, 'text/plain');
 }
 
 export function handOut(name: string, content: BlobPart, type: string): void {
@@ -74,7 +75,7 @@ export async function newChart(file: OpenFile): Promise<void> {
 
 export function newFile(): void {
   let n = 1;
-  const taken = (name: string) => files.find(name) || shell.folder.some((f) => f.path === name);
+  const taken = (name: string) => files.find(name) || shell.inFolder(name);
   while (taken(`new-${n}.g7`)) n++;
   shell.gallery = false;
   void shell.try(() => files.open(`new-${n}.g7`, FIRST)).then(() => shell.keysToDrawing());

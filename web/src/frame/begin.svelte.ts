@@ -36,9 +36,9 @@ export async function begin(): Promise<void> {
   const start = carries(location.hash) ? undefined : server.info?.start;
   const wished = new URL(location.href).searchParams.get('file') ?? start;
   if (wished) await shell.try(() => files.read(wished));
-  // A frame belongs to no window: it has no unsaved work.
+  // A frame in another page keeps no unsaved work.
   if (!embedded) await recover();
-  // Unsaved work may have the name of a file in the link; it comes first and stays.
+  // Behind that, because unsaved work may have the name of a file in the link, and stays.
   await shell.try(openAddress);
   shell.ready = true;
   addEventListener('hashchange', () => void shell.try(openAddress));

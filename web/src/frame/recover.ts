@@ -35,7 +35,7 @@ export async function restore(row: DraftRow): Promise<void> {
  * of the file. */
 async function shown({ path, text, base, waits }: Draft, seen: OpenFile | null = null): Promise<boolean> {
   const open = files.find(path);
-  const known = open ? open.saved !== null : shell.folder.some((f) => f.path === path);
+  const known = open ? open.saved !== null : shell.inFolder(path);
   const file = await shell.try(() => (known ? files.read(path) : files.open(path, text)));
   if (!file) return false;
   files.current = seen ?? file;

@@ -83,8 +83,8 @@ export const prefs: Kept = $state({ ...first, ...stored() });
 /** Stores the choices whenever they change; call once, inside a component. */
 export function keepPrefs(): void {
   $effect(() => {
-    const text = JSON.stringify(prefs);
     if (embedded) return;
+    const text = JSON.stringify(prefs);
     try {
       localStorage.setItem(KEY, text);
     } catch {

@@ -58,6 +58,11 @@ class Shell {
   closing: OpenFile | null = $state.raw(null);
   #count = 0;
 
+  /** True if the folder has a file of this path. */
+  inFolder(path: string): boolean {
+    return this.folder.some((row) => row.path === path);
+  }
+
   /** The visible chart of a file: the chosen one, otherwise the first. */
   chart(file: OpenFile | null): string | null {
     if (!file) return null;

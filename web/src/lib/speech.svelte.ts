@@ -28,7 +28,8 @@ class Speech {
     this.#waiting.clear();
     this.#timer = 0;
     if (texts.length === 0) return;
-    this.said = texts.join('. ');
+    // Some texts are whole sentences.
+    this.said = texts.map((text) => text.replace(/\.$/, '')).join('. ');
     this.#timer = window.setTimeout(this.#next, GAP);
   };
 }

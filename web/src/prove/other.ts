@@ -3,10 +3,9 @@ import type { Side } from '../lib/compared.svelte';
 import { files, lent, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { page, Refused } from '../lib/page';
+import { base } from '../lib/paths';
 import type { Form } from '../lib/protocol';
 import { server } from '../lib/server';
-
-const base = (path: string) => path.slice(path.lastIndexOf('/') + 1);
 
 /** The forms that are read back. */
 let known: Promise<Form[]> | undefined;

@@ -2,6 +2,7 @@
 // closed; edges are loaded when they become visible.
 import { shell } from '../lib/shell.svelte';
 import { handOut } from '../frame/actions';
+import { base } from '../lib/paths';
 import type { SignalType } from '../lib/protocol';
 import type { Lane, Span } from './lanes';
 import type { Run } from './state.svelte';
@@ -118,7 +119,7 @@ class Chronogram {
     const span = as === 'svg' ? { from_ms: Math.max(0, this.span.from), to_ms: Math.min(run.end, this.span.to) } : {};
     await shell.try(async () => {
       const { text } = await run.answers.call({ do: 'run_export', run: run.name, signals, as, ...span });
-      const name = run.file.slice(run.file.lastIndexOf('/') + 1).replace(/\.g7$/, '');
+      const name = base(run.file).replace(/\.g7$/, '');
       handOut(`${name}.${as}`, text, as === 'svg' ? 'image/svg+xml' : as === 'csv' ? 'text/csv' : 'text/plain');
     });
   }

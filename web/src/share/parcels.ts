@@ -49,12 +49,11 @@ export async function openAddress(): Promise<void> {
 async function openParcel({ file, text, uses, pictures }: Parcel): Promise<void> {
   const texts = [...uses, { file, text }];
   const folder = await freeFolder([...texts, ...pictures]);
-  const known = (name: string) => shell.folder.some((row) => row.path === name);
-  for (const leaf of pictures) if (!known(folder + leaf.file)) guests.put(folder + leaf.file, leaf.text);
+  for (const leaf of pictures) if (!shell.inFolder(folder + leaf.file)) guests.put(folder + leaf.file, leaf.text);
   // The file itself comes last, so that it is the one that is shown.
   for (const leaf of texts) {
     const name = folder + leaf.file;
-    const opened = await (!files.find(name) && known(name) ? files.read(name) : files.open(name, leaf.text));
+    const opened = await (!files.find(name) && shell.inFolder(name) ? files.read(name) : files.open(name, leaf.text));
     // At once: the address is about to forget it.
     if (!embedded && opened.changed) await drafts.keep(opened.name, { text: opened.text, base: opened.tag ?? '' });
   }
@@ -75,6 +74,6 @@ async function freeFolder(all: Leaf[]): Promise<string> {
 async function fits(name: string, text: string): Promise<boolean> {
   const open = files.find(name)?.text ?? guests.find(name);
   if (open !== undefined) return open === text;
-  if (!shell.folder.some((row) => row.path === name)) return true;
+  if (!shell.inFolder(name)) return true;
   return (await server.read(name).catch(() => null))?.text === text;
 }

@@ -1,6 +1,7 @@
 // The order and the headings of the gallery.
 import { isChart } from '../lib/charts';
 import { t, type Key } from '../lib/i18n';
+import { base } from '../lib/paths';
 import type { FileRow } from '../lib/server';
 
 const FOLDERS: [string, Key][] = [
@@ -45,7 +46,7 @@ export function groups(rows: FileRow[]): Group[] {
 
 /** A file named `chart` gets the name of its folder. */
 function label(row: FileRow, folder: string): string {
-  const name = row.path.slice(row.path.lastIndexOf('/') + 1);
+  const name = base(row.path);
   return name === 'chart.g7' && folder ? folder : plain(name);
 }
 

@@ -8,6 +8,7 @@ use super::rows::Row;
 use super::table::{answer, notes};
 use crate::files::GRADES;
 use crate::message::told;
+use crate::testing::defect_json;
 
 /// The table for a spreadsheet. A value that would begin a formula there begins with a quote.
 pub(super) fn csv(rows: &[Row]) -> String {
@@ -47,15 +48,14 @@ fn numbers(graded: &Graded) -> Vec<String> {
     };
     let ((passed, all), (reached, elements)) = (graded.passed(), graded.reached());
     let [seen, hidden] = [of(false), of(true)];
-    let answers = &graded.questions;
-    let proved = answers.iter().filter(|q| q.is_proved()).count();
-    let refuted = answers.iter().filter(|q| q.is_refuted()).count();
+    let (proved, questions) = graded.proved();
+    let refuted = graded.questions.iter().filter(|q| q.is_refuted()).count();
     let counts = [passed, all].into_iter().chain(seen).chain(hidden).chain([
         reached,
         elements,
         proved,
         refuted,
-        answers.len() - proved - refuted,
+        questions - proved - refuted,
     ]);
     counts.map(|n| n.to_string()).collect()
 }
@@ -106,14 +106,9 @@ fn test(test: &Tested) -> Value {
     match &test.ended {
         Ended::Passed => {}
         Ended::Blocked { place, what } => value["failure"] = json!({ "place": place, "what": told(what) }),
-        Ended::Failed(d) => {
-            let got: serde_json::Map<String, Value> =
-                d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
-            value["failure"] = json!({
-                "what": told(&d.what), "expected": d.expected, "got": got, "place": d.place,
-                "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
-                "ended_for_time": d.overdue,
-            });
+        Ended::Failed(defect) => {
+            value["failure"] = defect_json(defect, &told(&defect.what));
+            value["failure"]["ended_for_time"] = json!(defect.overdue);
         }
     }
     value

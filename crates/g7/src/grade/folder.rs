@@ -13,9 +13,9 @@ use g7_rig::Source;
 use crate::failure::{Failure, raw};
 use crate::{files, sources, used};
 
-/// The folders of an exercise that are read beside its own files.
+/// The subfolders of an exercise whose files are read too.
 const FOLDERS: [&str; 2] = ["wrong", "lib"];
-/// Longest file that is read, in bytes.
+/// The size of the largest file that is read, in bytes.
 const LONGEST: u64 = 8 << 20;
 
 /// The files of an exercise.

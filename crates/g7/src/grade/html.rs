@@ -12,7 +12,7 @@ use g7_rig::testing::Sort;
 
 use super::pages::MARK;
 use super::rows::{Row, Rows};
-use super::table::{alike, answer, errors, notes, percent};
+use super::table::{alike, answer, counted, errors, notes, percent};
 use crate::failure::raw;
 use crate::message::told;
 use crate::testing::escape;
@@ -69,10 +69,8 @@ fn class(mark: Mark) -> &'static str {
 fn index(exercise: &Exercise, all: &Rows, names: &[String]) -> String {
     let rows = &all.rows;
     let title = exercise.statement.title(language());
-    let passed = rows.iter().filter(|r| r.mark() == Mark::Passed).count();
     let mut body = format!("<h1>{}</h1>\n", escape(title));
-    let counted = say!("submissions that passed: {passed} of {}", rows.len());
-    body += &format!("<p>{}</p>\n", text(&counted));
+    body += &format!("<p>{}</p>\n", text(&counted(all)));
     let warning = say!("this page tells the hidden tests; the others do not");
     body += &format!("<p class=\"faint\">{}</p>\n<div class=\"wide\"><table>\n<thead><tr>", text(&warning));
     let heads = [say!("submission"), say!("result"), say!("tests"), say!("coverage"), say!("questions")];
@@ -90,9 +88,7 @@ fn line(row: &Row, page: &str) -> String {
     if let Ok(graded) = &row.graded
         && row.mark() != Mark::Unread
     {
-        let (passed, all) = graded.passed();
-        let proved = graded.questions.iter().filter(|q| q.is_proved()).count();
-        let questions = graded.questions.len();
+        let ((passed, all), (proved, questions)) = (graded.passed(), graded.proved());
         cells = [
             format!("{passed}/{all}"),
             format!("{}&nbsp;%", percent(graded)),

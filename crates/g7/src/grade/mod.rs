@@ -18,7 +18,7 @@ mod table;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use g7_grade::{Exercise, Fault, Mark, check};
+use g7_grade::{Exercise, Fault, check};
 use g7_model::say;
 
 use crate::failure::{Failure, Verdict};
@@ -54,8 +54,7 @@ pub(crate) fn grade(args: &Grade) -> Result<Verdict, Failure> {
     table::rows(&mut out, &all)?;
     out.flush()?;
     write(args, &exercise, &all)?;
-    let passed = all.rows.iter().all(|row| row.mark() == Mark::Passed);
-    Ok(if passed { Verdict::Fine } else { Verdict::Found })
+    Ok(if all.passed() == all.rows.len() { Verdict::Fine } else { Verdict::Found })
 }
 
 /// Tells what is wrong with an exercise.

@@ -42,12 +42,14 @@ pub(super) fn solutions(
         .chain(exercise.wrong.iter().map(|(path, bytes)| (path.as_str(), bytes.as_slice())))
         .collect();
     let mut graded = Vec::new();
-    let one = |number: usize| {
-        let (path, bytes) = all.get(number).copied().unwrap_or_default();
+    let one = |(path, bytes): &(&str, &[u8])| {
         let name = args.exercise.join(path).display().to_string();
-        Ok((path.to_owned(), work(args, exercise, exercise.submission(&name, bytes.to_vec(), &mut no_file))))
+        Ok((
+            (*path).to_owned(),
+            work(args, exercise, exercise.submission(&name, bytes.to_vec(), &mut no_file)),
+        ))
     };
-    share::in_order(args.jobs, all.len(), one, |done| {
+    share::in_order(args.jobs, &all, one, |done| {
         graded.push(done);
         Ok(())
     })?;
@@ -64,6 +66,13 @@ pub(super) struct Rows {
     pub(super) groups: Vec<Vec<String>>,
 }
 
+impl Rows {
+    /// The number of submissions that passed.
+    pub(super) fn passed(&self) -> usize {
+        self.rows.iter().filter(|row| row.mark() == Mark::Passed).count()
+    }
+}
+
 /// Grades submissions; `step` is called for each.
 pub(super) fn rows(
     args: &Grade,
@@ -72,13 +81,8 @@ pub(super) fn rows(
     mut step: impl FnMut(),
 ) -> Result<Rows, Failure> {
     let mut rows = Vec::new();
-    let one = |number: usize| {
-        let Some(submission) = submissions.get(number) else {
-            return Err(Failure::Usage(say!("there is no submission")));
-        };
-        Ok(row(args, exercise, submission))
-    };
-    share::in_order(args.jobs, submissions.len(), one, |row| {
+    let one = |submission: &Submission| Ok(row(args, exercise, submission));
+    share::in_order(args.jobs, submissions, one, |row| {
         step();
         rows.push(row);
         Ok(())

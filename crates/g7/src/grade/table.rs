@@ -45,8 +45,7 @@ pub(super) fn exercise(
 /// The numbers of a graded submission in a sentence.
 fn summary(graded: &Graded) -> Said {
     let ((passed, all), (reached, elements)) = (graded.passed(), graded.reached());
-    let proved = graded.questions.iter().filter(|q| q.is_proved()).count();
-    let questions = graded.questions.len();
+    let (proved, questions) = graded.proved();
     say!(
         "tests passed: {passed} of {all}; elements reached: {reached} of {elements}; questions proved: {proved} of {questions}"
     )
@@ -74,15 +73,18 @@ pub(super) fn rows(out: &mut dyn Write, all: &Rows) -> io::Result<()> {
     for group in &all.groups {
         writeln!(out, "{}", told(&alike(group)))?;
     }
-    let passed = rows.iter().filter(|r| r.mark() == Mark::Passed).count();
-    writeln!(out, "\n{}", told(&say!("submissions that passed: {passed} of {}", rows.len())))
+    writeln!(out, "\n{}", told(&counted(all)))
+}
+
+/// The sentence about all submissions.
+pub(super) fn counted(all: &Rows) -> Said {
+    say!("submissions that passed: {passed} of {}", all.rows.len(), passed = all.passed())
 }
 
 /// Tests, coverage and questions in columns.
 fn numbers(graded: &Graded) -> String {
-    let (passed, all) = graded.passed();
-    let proved = graded.questions.iter().filter(|q| q.is_proved()).count();
-    format!("{passed:>3}/{all:<3} {:>4} %  {proved}/{}", percent(graded), graded.questions.len())
+    let ((passed, all), (proved, questions)) = (graded.passed(), graded.proved());
+    format!("{passed:>3}/{all:<3} {:>4} %  {proved}/{questions}", percent(graded))
 }
 
 /// The part of the elements that the tests reached.

@@ -9,7 +9,7 @@ use crate::failure::raw;
 use crate::message::told;
 use crate::tongue::language;
 use crate::{report, style};
-use g7_rig::testing::{Coverage, Outcome, Unproved};
+use g7_rig::testing::{Coverage, Defect, Outcome, Unproved};
 
 /// Prints one line for each test.
 pub(super) fn progress_lines(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<()> {
@@ -129,13 +129,18 @@ fn test_json(o: &Outcome) -> Value {
         "notes": o.notes.iter().map(ToString::to_string).collect::<Vec<_>>(),
     });
     if let Some(d) = &o.defect {
-        let got: serde_json::Map<String, Value> = d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
-        test["failure"] = json!({
-            "what": d.what.as_str(), "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
-            "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
-        });
+        test["failure"] = defect_json(d, d.what.as_str());
     }
     test
+}
+
+/// Why a test failed; `what` is the sentence about it.
+pub(crate) fn defect_json(d: &Defect, what: &str) -> Value {
+    let got: serde_json::Map<String, Value> = d.got.iter().map(|(n, v)| (n.clone(), json!(v))).collect();
+    json!({
+        "what": what, "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
+        "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
+    })
 }
 
 fn coverage_json(file: &str, coverage: &Coverage) -> Value {

@@ -30,8 +30,7 @@ pub(super) fn share(
     take: impl FnMut(Done) -> Result<(), Failure>,
 ) -> Result<(), Failure> {
     let failed = AtomicBool::new(false);
-    let of = |number: usize| paths.get(number).map(PathBuf::as_path).unwrap_or(Path::new(""));
-    share::in_order(args.jobs, paths.len(), |number| one(args, of(number), &failed), take)
+    share::in_order(args.jobs, paths, |path| one(args, path, &failed), take)
 }
 
 fn one(args: &Test, path: &Path, failed: &AtomicBool) -> Result<Done, Failure> {

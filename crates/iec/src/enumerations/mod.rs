@@ -136,8 +136,8 @@ impl Settler<'_> {
         }
     }
 
-    /// Gives a variable the enumeration as its type and returns the place of the enumeration, if that stays a type. If not,
-    /// the variable keeps the type of the numbers.
+    /// If the enumeration is kept as a type, the variable gets it as its type, and its place in the table is returned.
+    /// Otherwise the variable keeps the number type.
     fn of_type(
         &self,
         ty: &mut Type,

@@ -4,7 +4,6 @@ use g7_edit::spliced;
 use g7_engine::{State, scan};
 use g7_host::VirtualClock;
 use g7_ide::File;
-use g7_ide::ids;
 use g7_model::{Document, Item, Said, say};
 use g7_rig::testing::{self, Coverage};
 use g7_rig::{Bench, Source};
@@ -156,5 +155,5 @@ fn fails(file: &File, text: String, title: &str) -> bool {
     };
     let last = source.tests().find(|t| &*t.title == title).and_then(|t| t.body.last()).map(|s| s.at.0);
     let defect = outcomes.iter().find(|o| o.title == title).and_then(|o| o.defect.as_ref());
-    last.zip(defect).is_some_and(|(last, d)| ids::holds(last, d.at))
+    last.zip(defect).is_some_and(|(last, d)| last.holds(d.at))
 }
