@@ -1,5 +1,6 @@
 // All panels of the page, collected from the folders that define them.
 import { panels as canvas } from '../canvas';
+import { panels as course } from '../course';
 import type { Panel } from '../lib/shell.svelte';
 import { panels as out } from '../export';
 import { panels as tables } from '../panels';
@@ -10,7 +11,7 @@ import { panels as text } from '../text';
 import { panels as wires } from '../wiring';
 import { panels as frame } from './index';
 
-const all: Panel[] = [...frame, ...canvas, ...tables, ...prove, ...run, ...start, ...text, ...out, ...wires];
+const all: Panel[] = [...frame, ...canvas, ...course, ...tables, ...prove, ...run, ...start, ...text, ...out, ...wires];
 
 export function slots(region: Panel['region']): Panel[] {
   return all.filter((p) => p.region === region).sort((a, b) => a.order - b.order);

@@ -2,6 +2,7 @@
 import { access } from './words/access';
 import { canvas } from './words/canvas';
 import { out } from './words/export';
+import { course } from './words/course';
 import { gone } from './words/gone';
 import { names } from './words/names';
 import { operator } from './words/operator';
@@ -18,7 +19,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...share, ...start, ...text, ...wiring, ...work } as const;
+const table = { ...access, ...shell, ...canvas, ...course, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...share, ...start, ...text, ...wiring, ...work } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

@@ -9,6 +9,8 @@ interface Kept {
   language: Language;
   theme: Theme;
   left: number;
+  /** The width of the text that is read beside the editor. */
+  reader: number;
   right: number;
   bottom: number;
   split: number;
@@ -39,6 +41,7 @@ const first: Kept = {
   language: spoken(),
   theme: 'auto',
   left: 240,
+  reader: 420,
   right: 300,
   bottom: 220,
   split: 0.5,

@@ -13,7 +13,7 @@ export interface Panel {
   id: string;
   title: Key;
   /** `over` lies above everything. */
-  region: 'left' | 'right' | 'bottom' | 'top' | 'text' | 'start' | 'over';
+  region: 'left' | 'right' | 'bottom' | 'top' | 'text' | 'reader' | 'start' | 'over';
   component: Component;
   /** Panels with lower numbers come first. */
   order: number;
@@ -50,6 +50,8 @@ class Shell {
   notices: Notice[] = $state.raw([]);
   /** True if the gallery covers the window. */
   gallery = $state(false);
+  /** True if a text to be read stands beside the editor; on a telephone, in its place. */
+  reading = $state(false);
   /** True after the start: the server is found and the first file is open. */
   ready = $state(false);
   /** The files of the server's folder, or the examples. */

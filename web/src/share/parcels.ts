@@ -46,7 +46,8 @@ export async function openAddress(): Promise<void> {
   }
 }
 
-async function openParcel({ file, text, uses, pictures }: Parcel): Promise<void> {
+/** Opens files that came together: the file itself is shown. */
+export async function openParcel({ file, text, uses, pictures }: Parcel): Promise<void> {
   const texts = [...uses, { file, text }];
   const folder = await freeFolder([...texts, ...pictures]);
   for (const leaf of pictures) if (!shell.inFolder(folder + leaf.file)) guests.put(folder + leaf.file, leaf.text);
