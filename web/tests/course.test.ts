@@ -1,0 +1,149 @@
+// The course beside the editor: its chapters are whole in three languages, their charts open and keep what a reader makes of
+// them, a question tells right from wrong, and the browser remembers the answers.
+import assert from 'node:assert/strict';
+import { existsSync, readdirSync, readFileSync } from 'node:fs';
+import { join } from 'node:path';
+import { after, before, test } from 'node:test';
+import type { Page } from 'playwright-core';
+import { axe, browser, done, drawn, openWith, playground, press, until, type Opened, type Site } from './lib';
+import { lesson } from '../src/course/lesson';
+import { course as words } from '../src/lib/words/course';
+
+const ROOT = join(import.meta.dirname, '../..');
+const ENDINGS = { en: 'text.md', fr: 'text.fr.md', pt: 'text.pt.md' } as const;
+const AT = { en: 0, fr: 1, pt: 2 } as const;
+
+let b: Awaited<ReturnType<typeof browser>>;
+/** A playground without examples: the course brings its own. */
+let site: Site;
+
+before(async () => {
+  [site, b] = await Promise.all([playground({}), browser()]);
+});
+
+after(async () => {
+  await b?.done();
+  await site?.stop();
+});
+
+const chapters = readdirSync(join(ROOT, 'course'), { withFileTypes: true })
+  .filter((e) => e.isDirectory())
+  .map((e) => e.name)
+  .sort();
+
+const textOf = (id: string, language: keyof typeof ENDINGS) => readFileSync(join(ROOT, 'course', id, ENDINGS[language]), 'utf8');
+const titleOf = (id: string, language: keyof typeof ENDINGS) => /^# (.*)/.exec(textOf(id, language))?.[1] ?? '';
+
+test('each chapter says the same in three languages, and names only what there is', () => {
+  assert.ok(chapters.length >= 15, chapters.join(', '));
+  for (const id of chapters) {
+    const [en, fr, pt] = (['en', 'fr', 'pt'] as const).map((language) => {
+      const blocks = lesson(textOf(id, language));
+      assert.equal(blocks.filter((k) => k.is === 'question').length, 1, `${id} has one question, ${language}`);
+      return blocks.map((k) => {
+        if (k.is === 'chart') return `chart ${k.href}`;
+        if (k.is === 'exercise') return `exercise ${k.name}`;
+        if (k.is === 'question') return `question ${k.choices.map((c) => (c.right ? 'right' : c.why.length > 0 ? 'wrong' : 'no reason')).join(' ')}`;
+        return k.token.type === 'list' ? `list of ${(k.token as unknown as { items: unknown[] }).items.length}` : k.token.type;
+      });
+    });
+    assert.deepEqual(fr, en, `${id}, French`);
+    assert.deepEqual(pt, en, `${id}, Portuguese`);
+    const rows = en ?? [];
+    const [question = ''] = rows.filter((row) => row.startsWith('question'));
+    assert.equal(question.split('right').length, 2, `${id}: ${question}`);
+    assert.ok(!question.includes('no reason'), `${id}: ${question}`);
+    assert.ok(rows.some((row) => row.startsWith('chart')), `${id} shows a chart`);
+    for (const row of rows) {
+      const [kind, name = ''] = row.split(' ');
+      if (kind === 'chart') assert.ok(existsSync(name.startsWith('examples/') ? join(ROOT, name) : join(ROOT, 'course', id, name)), `${id}: ${name}`);
+      if (kind === 'exercise') assert.ok(existsSync(join(ROOT, 'exercises', name, 'statement.md')), `${id}: ${name}`);
+    }
+  }
+});
+
+const chapter = (page: Page, title: string) => page.getByRole('button', { name: new RegExp(`^\\d+ ${title}`) });
+const article = (page: Page) => page.locator('article');
+
+async function start(language: keyof typeof AT, size?: { width: number; height: number }): Promise<Opened> {
+  const page = await openWith(b, site, '', { language }, size);
+  await page.getByRole('heading', { name: words['course.title'][AT[language]], exact: true }).waitFor();
+  return page;
+}
+
+test('a chapter is read in each language, with its chart beside it', async () => {
+  for (const language of ['en', 'fr', 'pt'] as const) {
+    const page = await start(language);
+    assert.equal(await page.locator('section[aria-labelledby="start-course"] li').count(), chapters.length);
+    const title = titleOf('02-rules', language);
+    await chapter(page, title).click();
+    await article(page).getByRole('heading', { name: title }).waitFor();
+    await drawn(page);
+    assert.equal(await page.locator('.sheet [data-id="Rules/s/4"]').count(), 1, 'the first chart of the chapter is open');
+    await page.locator('figure svg').first().waitFor();
+    assert.deepEqual(await axe(page), [], language);
+    await done(page);
+  }
+});
+
+test('an answer is told right or wrong with its reason, and stays answered', async () => {
+  const page = await start('en');
+  await chapter(page, titleOf('01-first', 'en')).click();
+  const answers = page.getByRole('radiogroup');
+  await answers.getByText('The chart is in error', { exact: true }).click();
+  await answers.getByText('a receptivity may be true at any time').waitFor();
+  await until(async () => (await page.locator('[data-speech]').textContent())?.includes('No') === true, 'a wrong answer is told');
+  assert.equal(await page.getByRole('combobox', { name: 'Chapter' }).locator('option').first().textContent(), '1. What a GRAFCET is');
+  await answers.getByText('Nothing', { exact: true }).click();
+  await answers.getByText('step 1 is not active').waitFor();
+  await until(async () => (await page.locator('[data-speech]').textContent())?.includes('Right') === true, 'a right answer is told');
+  await page.getByRole('button', { name: /^Next chapter: / }).click();
+  await article(page).getByRole('heading', { name: titleOf('02-rules', 'en') }).waitFor();
+  await page.getByRole('button', { name: 'Gallery' }).click();
+  await page.getByRole('button', { name: 'Go on with chapter 2' }).waitFor();
+  await page.reload();
+  await page.getByRole('button', { name: 'Gallery' }).click();
+  await page.getByRole('button', { name: 'Go on with chapter 2' }).waitFor();
+  await page.getByRole('button', { name: '1 What a GRAFCET is answered' }).waitFor();
+  await done(page);
+});
+
+test('a chart that the reader changed is shown again as it is, and a plant has its picture', async () => {
+  const page = await start('en');
+  await chapter(page, titleOf('07-times', 'en')).click();
+  await drawn(page);
+  assert.ok((await page.locator('[role=tab]').allTextContents()).join(' ').includes('bottle-conveyor'), 'an example keeps its name');
+  await press(page, 'Conveyor/s/0');
+  await page.keyboard.press('Delete');
+  await until(async () => (await page.locator('.sheet [data-id="Conveyor/s/0"]').count()) === 0, 'the step is gone');
+  await page.getByRole('button', { name: 'Open in the editor: Counters and timers' }).click();
+  await page.locator('.sheet [data-id^="Conveyor/"]').first().waitFor({ state: 'detached' });
+  await page.getByRole('button', { name: 'Open in the editor: A conveyor that stops after five bottles' }).click();
+  await page.locator('.sheet [data-id="Conveyor/s/1"]').waitFor({ state: 'attached' });
+  assert.equal(await page.locator('.sheet [data-id="Conveyor/s/0"]').count(), 0, 'it is as the reader left it');
+  await page.keyboard.press('Control+z');
+  await page.locator('.sheet [data-id="Conveyor/s/0"]').waitFor({ state: 'attached' });
+  await page.getByRole('tab', { name: 'Operate' }).click();
+  await page.getByRole('button', { name: 'Run', exact: true }).first().click();
+  await page.locator('.picture svg [data-g7]').first().waitFor({ state: 'attached' });
+  await page.getByRole('button', { name: 'Close the course' }).click();
+  await article(page).waitFor({ state: 'detached' });
+  await page.getByRole('button', { name: 'Course', exact: true }).click();
+  await article(page).getByRole('heading', { name: titleOf('07-times', 'en') }).waitFor();
+  await done(page);
+});
+
+test('on a telephone the text and the chart take turns', async () => {
+  const page = await start('pt', { width: 390, height: 844 });
+  await chapter(page, titleOf('05-and', 'pt')).click();
+  await article(page).getByRole('heading', { name: titleOf('05-and', 'pt') }).waitFor();
+  assert.ok(await page.evaluate(() => document.documentElement.scrollWidth <= innerWidth), 'nothing is wider than the window');
+  await page.locator('figure button').first().click();
+  await article(page).waitFor({ state: 'detached' });
+  await drawn(page);
+  await page.getByRole('button', { name: 'Curso', exact: true }).click();
+  await article(page).getByRole('heading', { name: titleOf('05-and', 'pt') }).waitFor();
+  await page.getByRole('button', { name: 'Desenho', exact: true }).click();
+  await article(page).waitFor({ state: 'detached' });
+  await done(page);
+});
