@@ -116,9 +116,9 @@ test('a chart that the reader changed is shown again as it is, and a plant has i
   await press(page, 'Conveyor/s/0');
   await page.keyboard.press('Delete');
   await until(async () => (await page.locator('.sheet [data-id="Conveyor/s/0"]').count()) === 0, 'the step is gone');
-  await page.getByRole('button', { name: 'Open in the editor: Counters and timers' }).click();
+  await page.getByRole('button', { name: 'Open in the editor Counters and timers' }).click();
   await page.locator('.sheet [data-id^="Conveyor/"]').first().waitFor({ state: 'detached' });
-  await page.getByRole('button', { name: 'Open in the editor: A conveyor that stops after five bottles' }).click();
+  await page.getByRole('button', { name: 'Open in the editor A conveyor that stops after five bottles' }).click();
   await page.locator('.sheet [data-id="Conveyor/s/1"]').waitFor({ state: 'attached' });
   assert.equal(await page.locator('.sheet [data-id="Conveyor/s/0"]').count(), 0, 'it is as the reader left it');
   await page.keyboard.press('Control+z');
