@@ -86,8 +86,8 @@ test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.pack
 	@test -f $(EXTENDED) || printf 'packages of the extension missing\teditors/vscode\n' >>$(G7_SKIPS)
 	@test ! -f $(EXTENDED) || { cd $(EXTENSION) && npm run --silent check && npm run --silent build && \
 		G7=$(DEBUG)/g7 npm run --silent test | tee $(TALLY)/vscode.log; }
-	$(DEBUG)/g7 check examples library
-	$(DEBUG)/g7 test examples library | tee $(TALLY)/examples.log
+	$(DEBUG)/g7 check examples library course
+	$(DEBUG)/g7 test examples library course | tee $(TALLY)/examples.log
 	@cargo run --quiet --package g7-peers --bin tally -- $(TALLY)
 
 # Programs in Python that tests talk to. Without a network they are skipped, which the tally counts.
