@@ -56,7 +56,7 @@ test('each chapter says the same in three languages, and names only what there i
     assert.ok(rows.some((row) => row.startsWith('chart')), `${id} shows a chart`);
     for (const row of rows) {
       const [kind, name = ''] = row.split(' ');
-      if (kind === 'chart') assert.ok(existsSync(name.startsWith('examples/') ? join(ROOT, name) : join(ROOT, 'course', id, name)), `${id}: ${name}`);
+      if (kind === 'chart') assert.ok(existsSync(join(ROOT, 'course', id, name)), `${id}: ${name}`);
       if (kind === 'exercise') assert.ok(existsSync(join(ROOT, 'exercises', name, 'statement.md')), `${id}: ${name}`);
     }
   }

@@ -29,11 +29,12 @@ function block(token: Token): Block {
   if (token.type === 'list' && (token as Tokens.List).items.every((item) => item.task)) return { is: 'question', choices: (token as Tokens.List).items.map(choice) };
   const only = token.type === 'paragraph' ? alone((token as Tokens.Paragraph).tokens) : undefined;
   if (only?.type === 'image') return { is: 'chart', href: only.href, caption: only.text };
-  if (only?.type === 'link' && only.href.startsWith(EXERCISE)) return { is: 'exercise', name: only.href.slice(EXERCISE.length), title: only.text };
+  const exercise = only?.type === 'link' && EXERCISE.exec(only.href)?.[1];
+  if (only && exercise) return { is: 'exercise', name: exercise, title: only.text };
   return { is: 'words', token };
 }
 
-const EXERCISE = 'exercise:';
+const EXERCISE = /^..\/..\/exercises\/([^/]+)\/statement\b/;
 
 /** The only part of a paragraph, if it is a picture or a link. */
 function alone(tokens: Token[]): Tokens.Image | Tokens.Link | undefined {
