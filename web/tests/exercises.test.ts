@@ -135,6 +135,7 @@ test('a right solution passes, and that stays when the page is loaded again, wit
   // Unsaved work and progress are kept a moment later.
   await page.waitForFunction(() => Object.entries(localStorage).filter(([key, text]) => /^g7-(work|exercises)/.test(key) && text.includes('step LetGo')).length === 2);
   await page.reload();
+  await page.getByRole('tab', { name: 'press.g7' }).click();
   await page.locator('.sheet [data-id="Press/s/LetGo"]').waitFor({ state: 'attached' });
   await page.getByRole('tab', { name: 'Exercise' }).click();
   await panel(page).locator('.chip', { hasText: 'done' }).waitFor();

@@ -124,7 +124,7 @@ impl Exercise {
         Ok(Exercise { statement, hints, template, model, wrong, locked, needs, asked, given })
     }
 
-    /// What a student's own program needs besides the template, not to be read by chance ([`Exercise::handed`]).
+    /// All that a student's own program needs besides the template, not to be read by chance ([`Exercise::handed`]).
     pub fn sealed(&self) -> String {
         let hidden = self.asked.iter().filter(|(source, _)| source.id() == self.model.id());
         let texts = hidden.flat_map(|(source, items)| items.iter().map(|i| source.written(i.at())));
@@ -200,7 +200,7 @@ fn given(template: &Source) -> Files {
     own.map(|o| (o.path.clone(), o.source.bytes.clone())).collect()
 }
 
-/// What is asked of a submission: all that the template asks, and what is hidden.
+/// Everything that is asked of a submission: by the template, and hidden.
 fn asked(template: &Arc<Source>, model: &Arc<Source>, hidden: Vec<Item>) -> Vec<(Arc<Source>, Vec<Item>)> {
     let seen = template.document.items.iter().filter(|i| locked::is_of_the_exercise(i)).cloned().collect();
     vec![(Arc::clone(template), seen), (Arc::clone(model), hidden)]

@@ -35,7 +35,7 @@ struct Told {
     hints: Vec<String>,
 }
 
-/// What the page needs to check a work.
+/// The part of an exercise that checks a work.
 #[derive(Debug, Deserialize, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ExerciseGiven", optional_fields = nullable))]
 pub(crate) struct Given {

@@ -19,7 +19,7 @@ const ROUNDS: readonly number[] = [2_000, 200_000];
 /** The longest time of a check, in ms. */
 const LONGEST = 180_000;
 
-/** What was found, for which text. */
+/** The findings of a check, and the text that they are about. */
 export interface Found {
   id: string;
   file: string;
@@ -41,7 +41,7 @@ class Exercises {
   /** The exercise of the visible file, by its name. */
   readonly id: string | null = $derived(files.current ? progress.idOf(files.current.name) : null);
   readonly current: Exercise | null = $derived(this.all.find((one) => one.id === this.id) ?? null);
-  /** What was found about the visible file. */
+  /** The findings about the visible file. */
   readonly result: Found | null = $derived(this.found && this.found.id === this.id && this.found.file === files.current?.name ? this.found : null);
   /** The text has changed since. */
   readonly old: boolean = $derived(this.result !== null && this.result.hash !== files.current?.look.hash);

@@ -32,7 +32,7 @@ interface Work {
   states: number;
 }
 
-/** What a run shows: an answer, or the failure of a test of an exercise, whose number is below 0. */
+/** The subject of a run that is shown: an answer, or the failure of a test of an exercise, whose number is below 0. */
 export type Played = Pick<ProofRow, 'number' | 'claim' | 'run' | 'id' | 'blame'>;
 
 /** An answer whose run is shown on the chart. */

@@ -205,7 +205,7 @@ export type ExerciseFault = {
   what: string;
 };
 
-/** What the page needs to check a work. */
+/** The part of an exercise that checks a work. */
 export type ExerciseGiven = {
   /** The text that the student gets. */
   template: string;

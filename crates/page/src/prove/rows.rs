@@ -73,7 +73,7 @@ pub(crate) enum Found {
 }
 
 impl Found {
-    /// What a verdict says of its claim.
+    /// The word for a verdict.
     pub(crate) fn of(verdict: &Verdict) -> Found {
         match verdict {
             Verdict::Proved(_) => Found::Proved,

@@ -13,7 +13,6 @@ export const exercise = {
   'exercise.done': ['done', 'réussi', 'concluído'],
   'exercise.broken': ['This exercise has mistakes, for its teacher:', 'Cet exercice a des erreurs, pour son enseignant :', 'Este exercício tem erros, para o seu professor:'],
   'exercise.absent': ['The exercise of this file is not here.', 'L’exercice de ce fichier n’est pas là.', 'O exercício deste ficheiro não está aqui.'],
-  'exercise.statement': ['Statement', 'Énoncé', 'Enunciado'],
   'exercise.hints': ['Hints', 'Indices', 'Pistas'],
   'exercise.hint': ['Next hint ({n} of {of})', 'Indice suivant ({n} sur {of})', 'Pista seguinte ({n} de {of})'],
   'exercise.check': ['Check my solution', 'Vérifier ma solution', 'Verificar a minha solução'],
