@@ -76,6 +76,7 @@ test('the template fails a test that is seen: its moment is told, and played up 
   // The end of the run is the moment of the test; the buttons are as the test has set them.
   await page.getByRole('status').filter({ hasText: /3\.0\d* s/ }).waitFor();
   assert.equal(await page.getByRole('tab', { name: 'Chronogram', exact: true }).getAttribute('aria-selected'), 'true');
+  await page.getByRole('tab', { name: 'Exercise', selected: true }).waitFor();
   await page.getByRole('tab', { name: 'Operate' }).click();
   for (const name of ['left', 'right']) await page.getByRole('switch', { name, exact: true, checked: true }).waitFor();
   await done(page);

@@ -1,9 +1,10 @@
 // The result of a check in sentences: for the panel and for screen readers.
 import { t } from '../lib/i18n';
+import { prefs } from '../lib/prefs.svelte';
 import type { ExerciseChecked } from '../lib/protocol';
 
 /** A time as a reader counts it. */
-export const seconds = (ms: number) => `${Number((ms / 1000).toFixed(3))} s`;
+export const seconds = (ms: number) => `${new Intl.NumberFormat(prefs.language, { maximumFractionDigits: 3 }).format(ms / 1000)} s`;
 
 /** The result in one sentence, and what is left open. */
 export function summary({ mark, tests, questions }: ExerciseChecked): string[] {
