@@ -29,7 +29,7 @@ CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
 STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
 NODE := $(PYTHON)/node
-PAGE := $(shell find web/src docs/book/src/problems docs/book/fr docs/book/pt crates/model/src/said web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
+PAGE := $(shell find web/src exercises docs/book/src/problems docs/book/fr docs/book/pt crates/model/src/said web/index.html web/public web/*.ts web/*.js web/*.mjs -type f 2>/dev/null)
 
 # The extension for VS Code; its packages are pinned by its lock.
 EXTENSION := editors/vscode

@@ -66,6 +66,8 @@ const RARE: Message[] = [
   { do: 'prove', file: 'a.g7', states: 1000, mib: 64 },
   { do: 'prove_ways', file: 'a.g7', hash: 'of no text', question: 0, run: [] },
   { do: 'compare', files: ['a.g7', 'a.g7'], profiles: [null, 'iec61131'], states: 1000, mib: 64 },
+  { do: 'exercise_pack', folder: 'on', files: [{ file: 'statement.md', text: '# On\n' }, { file: 'template.g7', text: CHART }, { file: 'model.g7', text: CHART }] },
+  { do: 'exercise_check', name: 'a.g7', text: CHART, exercise: { template: CHART, uses: [], sealed: '' }, states: 100 },
 ];
 
 test('what the first module does not contain is answered as by the whole program', async () => {

@@ -45,12 +45,17 @@ async function below(page: Page, tab: string): Promise<void> {
 test('the gallery draws the examples and opens them', async () => {
   const page = await open(b, site);
   const card = page.getByRole('button', { name: /five bottles stop it/ });
+  // A card is drawn when it comes into sight, and the exercises stand before the examples.
+  const toExamples = () => page.locator('.groups .card').first().scrollIntoViewIfNeeded();
+  await page.getByRole('heading', { name: 'Exercises' }).waitFor();
+  await toExamples();
   await card.waitFor();
   assert.match(await card.innerText(), /2 steps · 6 tests · plant/);
   assert.ok((await card.locator('svg .g7-box').count()) >= 2);
   await page.getByRole('searchbox').fill('gemma');
   assert.equal(await card.count(), 0);
   await page.getByRole('searchbox').fill('');
+  await toExamples();
   await card.click();
   await page.waitForSelector('.sheet [data-id="Conveyor/s/1"]', { state: 'attached' });
   await page.getByRole('button', { name: 'Gallery' }).click();

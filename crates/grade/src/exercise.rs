@@ -17,6 +17,7 @@ use g7_rig::{Source, testing};
 
 use crate::locked::{self, Locked};
 use crate::needs::{self, Need};
+use crate::sealed;
 use crate::texts::{Files, Texts, file_name};
 
 /// The file that the student gets.
@@ -87,9 +88,7 @@ impl Exercise {
                 fault(shown(path), what);
                 return None;
             };
-            let mut source = Source::native(&shown(path), bytes.clone(), id);
-            source.link(&mut |used| files.get(used).cloned().ok_or_else(|| say!("there is no such file")));
-            Some(source)
+            Some(linked(Source::native(&shown(path), bytes.clone(), id), files))
         };
         let (template, model) = (read(TEMPLATE, TEMPLATE_ID), read(MODEL, MODEL_ID));
         let (Some(template), Some(model)) = (template, model) else { return Err(faults) };
@@ -109,12 +108,8 @@ impl Exercise {
                 "the template has this too, and not the same: the student would see another one than the one that counts"
             ),
         }));
-        let given = template.others().iter().filter(|o| !o.library);
-        let given = given.map(|o| (o.path.clone(), o.source.bytes.clone())).collect();
         let (template, model) = (Arc::new(template), Arc::new(model));
-        let seen: Vec<Item> =
-            template.document.items.iter().filter(|i| locked::is_of_the_exercise(i)).cloned().collect();
-        let asked = vec![(Arc::clone(&template), seen), (Arc::clone(&model), hidden)];
+        let asked = asked(&template, &model, hidden);
         if !asked.iter().any(|(_, items)| items.iter().any(|i| matches!(i, Item::Test(_)))) {
             let what = say!("the exercise has no test, so that nothing could be graded");
             faults.push(Fault { place: shown(TEMPLATE), what });
@@ -125,7 +120,49 @@ impl Exercise {
         let wrong = files.iter().filter(|(path, _)| path.starts_with(WRONG) && path.ends_with(".g7"));
         let wrong = wrong.map(|(path, bytes)| (path.clone(), bytes.clone())).collect();
         let needs = needs::needs(&template, &model, &asked);
+        let given = given(&template);
         Ok(Exercise { statement, hints, template, model, wrong, locked, needs, asked, given })
+    }
+
+    /// All that a student's own program needs besides the template, not to be read by chance ([`Exercise::handed`]).
+    pub fn sealed(&self) -> String {
+        let hidden = self.asked.iter().filter(|(source, _)| source.id() == self.model.id());
+        let texts = hidden.flat_map(|(source, items)| items.iter().map(|i| source.written(i.at())));
+        let needs: Vec<String> = self.needs.iter().map(Need::line).collect();
+        sealed::seal(&needs, &texts.collect::<Vec<_>>())
+    }
+
+    /// The exercise as a student's own program has it: the template, the files that it uses, and what
+    /// [`Exercise::sealed`] gave. It grades as the whole exercise does, and has neither solutions nor texts.
+    ///
+    /// # Errors
+    ///
+    /// The sealed part is damaged.
+    pub fn handed(template: &[u8], others: &Files, sealed: &str) -> Result<Exercise, Said> {
+        let damaged = || say!("the hidden part of this exercise is damaged");
+        let (needs, hidden) = sealed::open(sealed).ok_or_else(damaged)?;
+        let needs: Option<Vec<Need>> = needs.iter().map(|line| Need::of_line(line, MODEL)).collect();
+        let template = linked(Source::native(TEMPLATE, template.to_vec(), TEMPLATE_ID), others);
+        let model = Source::native(MODEL, hidden.into_bytes(), MODEL_ID);
+        let (locked, _) = locked::locked(&template);
+        let hidden = model.document.items.iter().filter(|i| locked::is_of_the_exercise(i)).cloned().collect();
+        let (template, model) = (Arc::new(template), Arc::new(model));
+        Ok(Exercise {
+            statement: Texts::default(),
+            hints: Texts::default(),
+            wrong: Files::new(),
+            locked,
+            needs: needs.ok_or_else(damaged)?,
+            asked: asked(&template, &model, hidden),
+            given: given(&template),
+            template,
+            model,
+        })
+    }
+
+    /// The files that the template uses, which each submission may use.
+    pub fn given(&self) -> &Files {
+        &self.given
     }
 
     /// Reads the charts of a submission, or of a solution. `read` has the files that it brings along; those that the template
@@ -149,6 +186,24 @@ impl Exercise {
                 .filter_map(move |i| if let Item::Test(t) = i { Some((&*t.title, hidden)) } else { None })
         })
     }
+}
+
+/// A file of the exercise with those that it uses.
+fn linked(mut source: Source, files: &Files) -> Source {
+    source.link(&mut |used| files.get(used).cloned().ok_or_else(|| say!("there is no such file")));
+    source
+}
+
+/// The files that a template uses, apart from the library.
+fn given(template: &Source) -> Files {
+    let own = template.others().iter().filter(|o| !o.library);
+    own.map(|o| (o.path.clone(), o.source.bytes.clone())).collect()
+}
+
+/// Everything that is asked of a submission: by the template, and hidden.
+fn asked(template: &Arc<Source>, model: &Arc<Source>, hidden: Vec<Item>) -> Vec<(Arc<Source>, Vec<Item>)> {
+    let seen = template.document.items.iter().filter(|i| locked::is_of_the_exercise(i)).cloned().collect();
+    vec![(Arc::clone(template), seen), (Arc::clone(model), hidden)]
 }
 
 /// The errors among some problems.

@@ -16,7 +16,7 @@ use g7_host::Clock;
 use g7_model::{Item, Nanos, Problem, Property, PropertyKind, Said, Span, say};
 use g7_rig::testing::{self, Coverage, Defect, Options, Outcome};
 use g7_rig::{Error, Source};
-use g7_verify::{Budget, Evidence, Model, Open, Question, Verdict, answer, ask, ask_with, words};
+use g7_verify::{Budget, Evidence, Model, Open, Question, Verdict, answer, ask, ask_with, attempt, words};
 
 use crate::exercise::{Exercise, errors};
 use crate::locked::{self, Changed};
@@ -31,8 +31,10 @@ pub struct Limits<'a> {
     pub test: Nanos,
     /// Starts the clock of the questions; what it returns says when their time is over.
     pub questions: &'a dyn Fn() -> Stop,
-    /// Most bytes and states that a search keeps.
+    /// Most bytes that a search keeps.
     pub bytes: usize,
+    /// Most states that a search keeps, for a caller without a clock, who cannot end it; `None` for one who can.
+    pub states: Option<usize>,
     /// The clock of the tests.
     pub clock: &'a mut dyn Clock,
 }
@@ -351,7 +353,13 @@ fn answered(source: &Source, exercise: &Exercise, limits: &Limits<'_>) -> Vec<An
         return Vec::new();
     }
     let stop = (limits.questions)();
-    let budget = Budget { states: usize::MAX, scans: usize::MAX, bytes: limits.bytes, stop: &*stop };
+    let search = limits.states.map_or(Search::Whole, |_| Search::Short);
+    let budget = Budget {
+        states: limits.states.unwrap_or(usize::MAX),
+        scans: usize::MAX,
+        bytes: limits.bytes,
+        stop: &*stop,
+    };
     let mut found: Vec<(Span, Answered)> = Vec::new();
     let mut asks = source.clone();
     let mut plants: Vec<Option<String>> = vec![None];
@@ -359,7 +367,7 @@ fn answered(source: &Source, exercise: &Exercise, limits: &Limits<'_>) -> Vec<An
     for plant in &plants {
         let is_mine = |p: &Property| p.plant.as_ref().map(|name| &*name.text) == plant.as_deref();
         while asks.document.properties().any(|p| is_mine(p) && !is_assumption(p)) {
-            let problems = match asked(&asks, plant.as_deref(), &budget) {
+            let problems = match asked(&asks, plant.as_deref(), search, &budget) {
                 Ok(verdicts) => {
                     found.extend(verdicts.into_iter().map(|one| (one.at, one.said(source, exercise))));
                     break;
@@ -394,6 +402,15 @@ fn is_assumption(property: &Property) -> bool {
     matches!(property.kind, PropertyKind::Assume(_))
 }
 
+/// How far a search goes.
+#[derive(Clone, Copy)]
+enum Search {
+    /// Until the caller ends it.
+    Whole,
+    /// As far as the number of states allows, and a little further.
+    Short,
+}
+
 /// A question that was asked.
 struct Asked {
     at: Span,
@@ -423,11 +440,19 @@ impl Asked {
 /// # Errors
 ///
 /// The errors of charts or questions.
-fn asked(source: &Source, plant: Option<&str>, budget: &Budget<'_>) -> Result<Vec<Asked>, Vec<Problem>> {
+fn asked(
+    source: &Source,
+    plant: Option<&str>,
+    search: Search,
+    budget: &Budget<'_>,
+) -> Result<Vec<Asked>, Vec<Problem>> {
     let put = |model: &Model<'_>, questions: &[Question]| {
         let own: Vec<Question> = questions.iter().filter(|q| q.claim.is_own()).cloned().collect();
         let mut verdicts = vec![None; own.len()];
-        answer(model, &own, &mut verdicts, budget);
+        match search {
+            Search::Whole => answer(model, &own, &mut verdicts, budget),
+            Search::Short => attempt(model, &own, &mut verdicts, budget, true),
+        }
         let claim = |q: &Question| Said::in_each(words::claim(source.written(q.at), model.compiled, q));
         let asked = own.iter().zip(verdicts).map(|(q, verdict)| Asked { at: q.at, claim: claim(q), verdict });
         asked.collect()

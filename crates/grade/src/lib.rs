@@ -24,6 +24,7 @@ mod exercise;
 mod judge;
 mod locked;
 mod needs;
+mod sealed;
 mod shape;
 mod texts;
 

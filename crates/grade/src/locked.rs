@@ -22,6 +22,8 @@ type Key = (&'static str, String);
 pub struct Changed {
     /// `path:line:column` in the submission; its path alone where the part is missing.
     pub place: String,
+    /// The same in its text; nothing where the part is missing.
+    pub at: Option<Span>,
     /// The sentence.
     pub what: Said,
 }
@@ -115,10 +117,12 @@ pub(crate) fn changed(locked: &[Locked], template: &Document, submission: &Sourc
             Some(there) if there.item == part.item => {}
             Some(there) => found.push(Changed {
                 place: submission.place(there.item.at()),
+                at: Some(there.item.at()),
                 what: say!("the locked part `{name}` is not as in the template"),
             }),
             None => found.push(Changed {
                 place: submission.name.clone(),
+                at: None,
                 what: say!("the locked part `{name}` is missing"),
             }),
         }
@@ -130,6 +134,7 @@ pub(crate) fn changed(locked: &[Locked], template: &Document, submission: &Sourc
             let name = Said::foreign(there.key.1.as_str());
             found.push(Changed {
                 place: submission.place(there.item.at()),
+                at: Some(there.item.at()),
                 what: say!("the template leaves `{name}` at its usual value, and this changes it"),
             });
         }

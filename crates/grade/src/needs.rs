@@ -55,6 +55,50 @@ pub(crate) fn needs(template: &Source, model: &Source, asked: &[(Arc<Source>, Ve
     found.into_iter().map(|(definition, place)| Need { definition, place }).collect()
 }
 
+impl Need {
+    /// The name as a line of words: its kind, what it belongs to, itself.
+    pub(crate) fn line(&self) -> String {
+        let (kind, of) = match &self.definition {
+            Definition::Chart(_) => ("chart", ""),
+            Definition::Function(_) => ("function", ""),
+            Definition::Type(_) => ("type", ""),
+            Definition::Plant(_) => ("plant", ""),
+            Definition::Step { chart, .. } => ("step", chart.as_str()),
+            Definition::Variable { chart, .. } => ("variable", chart.as_deref().unwrap_or_default()),
+            Definition::Action { chart, .. } => ("action", chart.as_deref().unwrap_or_default()),
+            Definition::Section { chart, .. } => ("section", chart.as_deref().unwrap_or_default()),
+            Definition::Value { of, .. } => ("value", of.as_str()),
+            Definition::Member { of, .. } => ("member", of.as_str()),
+            Definition::Transition { chart, .. } => ("transition", chart.as_str()),
+            Definition::PlantItem { plant, .. } => ("item", plant.as_str()),
+        };
+        [kind, of, name(&self.definition)].join("\t")
+    }
+
+    /// Reads such a line. `place` is the file that names it.
+    pub(crate) fn of_line(line: &str, place: &str) -> Option<Need> {
+        let mut words = line.split('\t').map(str::to_owned);
+        let (kind, of, name) = (words.next()?, words.next()?, words.next()?);
+        let chart = Some(of.clone()).filter(|of| !of.is_empty());
+        let definition = match kind.as_str() {
+            "chart" => Definition::Chart(name),
+            "function" => Definition::Function(name),
+            "type" => Definition::Type(name),
+            "plant" => Definition::Plant(name),
+            "step" => Definition::Step { chart: of, name },
+            "variable" => Definition::Variable { chart, name },
+            "action" => Definition::Action { chart, name },
+            "section" => Definition::Section { chart, name },
+            "value" => Definition::Value { of, name },
+            "member" => Definition::Member { of, name },
+            "transition" => Definition::Transition { chart: of, label: name },
+            "item" => Definition::PlantItem { plant: of, name },
+            _ => return None,
+        };
+        Some(Need { definition, place: place.to_owned() })
+    }
+}
+
 /// The names that a submission lacks.
 pub(crate) fn lacks(needs: &[Need], submission: &Source) -> Vec<Lack> {
     let known = references(submission.whole());

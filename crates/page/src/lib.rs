@@ -6,7 +6,8 @@
 //! page (TypeScript) -> JSON -> Page::call -> ide:   files, gestures, completion, problems …
 //!                                        |-> draw
 //!                                        |-> Runs:  rig, host, engine
-//!                                        \-> prove: verify
+//!                                        |-> prove: verify
+//!                                        \-> exercise: grade
 //! ```
 //!
 //! The same [`Page`] runs in the browser (as wasm, through `wasm`) and in the server (for shared
@@ -21,6 +22,7 @@ mod answer;
 mod between;
 mod drawing;
 mod edit;
+mod exercise;
 mod explain;
 mod export;
 mod language;

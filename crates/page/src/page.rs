@@ -12,6 +12,7 @@ use g7_rig::named;
 use crate::answer::{self, Answer, Before, Breaks, Shelved, Style, Text, ok, shelf, shelved};
 use crate::between::{self, Between, Lent, WHOLE};
 use crate::edit::{self, Edited, Foreseen};
+use crate::exercise;
 use crate::export::{self, Form, Out};
 use crate::language::{self, ActionForm, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::{Merged, merge};
@@ -373,6 +374,20 @@ impl Answers for Page {
         }
         let [a, b] = &wish.files;
         prove::compared([self.file(a)?, self.file(b)?], &wish)
+    }
+
+    fn exercise_pack(&mut self, folder: String, files: Vec<Shelved>) -> Result<exercise::Packed, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
+        Ok(exercise::pack(&folder, files, self.language))
+    }
+
+    fn exercise_check(&mut self, work: exercise::Work) -> Result<exercise::Checked, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
+        exercise::check(work, self.language)
     }
 
     fn before(&mut self, file: String) -> Result<Before, Said> {

@@ -7,6 +7,7 @@ use serde::Deserialize;
 use crate::answer::{Answer, Before, Breaks, Shelved, Style, Text, ok};
 use crate::drawing::Wish as Drawing;
 use crate::edit::{Edited, Foreseen};
+use crate::exercise::{Checked, Packed, Work};
 use crate::export::{Form, Out};
 use crate::language::{ActionForm, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::Merged;
@@ -159,6 +160,12 @@ requests! {
 
     /// Compares two files for every sequence of inputs, as far as the limits go.
     fn compare(#[serde(flatten)] wish: Both) -> Compared;
+
+    /// An exercise for students, from the files of its folder by their paths in it.
+    fn exercise_pack(folder: String, files: Vec<Shelved>) -> Packed;
+
+    /// Checks the work of a student by the tests and questions of an exercise.
+    fn exercise_check(#[serde(flatten)] work: Work) -> Checked;
 
     /// The text before the last change.
     fn before(file: String) -> Before;

@@ -78,6 +78,7 @@ const ALLOWED: &[Arrows] = &[
             "g7-ide",
             "g7-rig",
             "g7-verify",
+            "g7-grade",
         ],
         Some(&["diffy", "serde", "serde_json", "ts-rs"]),
     ),

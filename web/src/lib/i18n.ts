@@ -1,6 +1,7 @@
 // One table of words: key -> [English, French, Portuguese].
 import { access } from './words/access';
 import { canvas } from './words/canvas';
+import { exercise } from './words/exercise';
 import { out } from './words/export';
 import { course } from './words/course';
 import { gone } from './words/gone';
@@ -19,7 +20,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...course, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...share, ...start, ...text, ...wiring, ...work } as const;
+const table = { ...access, ...shell, ...canvas, ...course, ...exercise, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...share, ...start, ...text, ...wiring, ...work } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

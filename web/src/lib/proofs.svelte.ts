@@ -32,9 +32,12 @@ interface Work {
   states: number;
 }
 
+/** The subject of a run that is shown: an answer, or the failure of a test of an exercise, whose number is below 0. */
+export type Played = Pick<ProofRow, 'number' | 'claim' | 'run' | 'id' | 'blame'>;
+
 /** An answer whose run is shown on the chart. */
 export interface Shown {
-  row: ProofRow;
+  row: Played;
   hash: string;
   run: Run;
   /** The run that it replaced moved. */
@@ -149,9 +152,13 @@ class Proofs {
     this.#byFile = new Map(this.#byFile).set(file, proof);
   }
 
-  /** Shows the run of an answer on the chart, in the place of the file's run. */
-  async play(file: OpenFile, row: ProofRow): Promise<Run | null> {
-    const hash = this.#byFile.get(file.name)?.hash ?? '';
+  /** The text that was asked, by its hash. */
+  asked(file: OpenFile): string {
+    return this.#byFile.get(file.name)?.hash ?? '';
+  }
+
+  /** Shows the run of an answer about a text of this hash on the chart, in the place of the file's run. */
+  async play(file: OpenFile, row: Played, hash: string): Promise<Run | null> {
     if (!row.run || hash !== file.look.hash) return null;
     const [before, again] = [runs.of(file.name), this.shown];
     const kept = again && before === again.run ? { had: again.had, moved: again.moved } : { had: before !== null, moved: before?.playing ?? false };

@@ -178,6 +178,82 @@ export type Edited = {
   parts: Array<string>;
 };
 
+/** A locked part that is not as it was. */
+export type ExerciseChange = {
+  what: string;
+  /** Its place; none where the part is missing. */
+  from?: number;
+  to?: number;
+};
+
+/** A checked work. */
+export type ExerciseChecked = {
+  mark: ExerciseMark;
+  /** The errors of the charts; nothing ran then. */
+  problems: Array<Problem>;
+  changed: Array<ExerciseChange>;
+  /** The names that the exercise looks at and that are missing: a sentence for each. */
+  missing: Array<string>;
+  tests: Array<ExerciseTest>;
+  questions: Array<ExerciseQuestion>;
+};
+
+/** A mistake of an exercise. */
+export type ExerciseFault = {
+  /** A path, or `path:line:column`. */
+  place: string;
+  what: string;
+};
+
+/** The part of an exercise that checks a work. */
+export type ExerciseGiven = {
+  /** The text that the student gets. */
+  template: string;
+  /** The files that it uses, by their paths from its folder. */
+  uses: Array<Shelved>;
+  /** The hidden part. */
+  sealed: string;
+};
+
+/** The result of a check in one word. */
+export type ExerciseMark = 'passed' | 'changed' | 'fitted' | 'failed' | 'unread';
+
+/** An exercise as students get it, or the mistakes of its folder. */
+export type ExercisePacked = {
+  /** One for each language of the page. */
+  texts: Array<ExerciseTexts>;
+  given: ExerciseGiven | null;
+  faults: Array<ExerciseFault>;
+};
+
+/** A question of the exercise. A hidden one has neither claim nor run. */
+export type ExerciseQuestion = {
+  hidden: boolean;
+  verdict: Verdict;
+  claim?: string;
+  reason?: string;
+  /** The run that breaks it. */
+  run?: Array<ProofScan>;
+};
+
+/** A test of the exercise. Of a hidden one there are only `hidden`, `ok` and the time. */
+export type ExerciseTest = {
+  hidden: boolean;
+  ok: boolean;
+  title?: string;
+  /** Why it failed. */
+  why?: string;
+  /** When it failed. */
+  time_ms?: number;
+  /** The names in the condition that failed, with their values. */
+  got: Array<[string, string]>;
+  /** The scans up to that moment; none where inputs alone do not lead there. */
+  run?: Array<ProofScan>;
+};
+
+/** The texts of an exercise in one language. */
+export type ExerciseTexts = { language: string; title: string; statement: string; hints: Array<string> };
+
 export type Failure = {
   message: string;
   /** The place of the failed statement. */
@@ -1071,6 +1147,19 @@ export interface Requests {
     /** Most memory for them, in MiB. */
     mib: number;
   };
+  /** An exercise for students, from the files of its folder by their paths in it. */
+  exercise_pack: { folder: string; files: Array<Shelved> };
+  /** Checks the work of a student by the tests and questions of an exercise. */
+  exercise_check: {
+    /** The name of the student's file. */
+    name: string;
+    text: string;
+    /** The files that it uses. */
+    uses?: Array<Shelved> | null;
+    exercise: ExerciseGiven;
+    /** Most states of the search for the answers to questions. */
+    states: number;
+  };
   /** The text before the last change. */
   before: { file: string };
   /** The classes of the tokens in a part of the text. */
@@ -1152,6 +1241,8 @@ export interface Answers {
   prove: ProofReport;
   prove_ways: ProofWays;
   compare: ComparedReport;
+  exercise_pack: ExercisePacked;
+  exercise_check: ExerciseChecked;
   before: Before;
   tokens: Array<[number, number, string]>;
   complete: Completions;

@@ -17,6 +17,8 @@ export interface Panel {
   component: Component;
   /** Panels with lower numbers come first. */
   order: number;
+  /** False while there is nothing to be seen in it; a panel without this is always there. */
+  shown?: () => boolean;
 }
 
 /** A place of the text to be shown. */

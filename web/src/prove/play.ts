@@ -1,7 +1,7 @@
 // Plays the run of an answer on the chart: from its first scan to its last, where it stays.
 import { chronogram } from '../run/chronogram.svelte';
 import type { OpenFile } from '../lib/files.svelte';
-import { proofs } from '../lib/proofs.svelte';
+import { proofs, type Played } from '../lib/proofs.svelte';
 import type { ProofRow } from '../lib/protocol';
 import { runs, type Run } from '../lib/runs.svelte';
 import { shell } from '../lib/shell.svelte';
@@ -15,14 +15,20 @@ const LEAST = 120;
 
 const wait = (ms: number) => new Promise((done) => setTimeout(done, ms));
 
-export async function play(file: OpenFile, row: ProofRow): Promise<void> {
+export function play(file: OpenFile, row: ProofRow): Promise<void> {
+  return show(file, row, proofs.asked(file));
+}
+
+/** Plays a run of the text of this hash; `before` is done when it is there, and before it is seen. */
+export async function show(file: OpenFile, row: Played, hash: string, before: (run: Run) => void = () => undefined): Promise<void> {
   await shell.try(async () => {
-    const run = await proofs.play(file, row);
+    const run = await proofs.play(file, row, hash);
     if (!run) return;
     const id = row.blame?.[0] ?? row.id;
     if (id) shell.jump(file, id);
     shell.select([]);
     chronogram.whole(run);
+    before(run);
     await walk(run, row.run?.length ?? 0);
   });
 }

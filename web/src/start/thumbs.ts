@@ -19,20 +19,20 @@ export interface Thumb {
 const known = new Map<string, Promise<Thumb>>();
 let last: Promise<unknown> = Promise.resolve();
 
+/** The picture of a file of the gallery. */
 export function thumb(row: FileRow): Promise<Thumb> {
-  const key = `${row.path}\n${row.hash}`;
+  return queued(`${row.path}\n${row.hash}`, row.path, async () => (await server.read(row.path)).text);
+}
+
+/** The picture of a text, made when its turn comes; `key` is another one for another text. */
+export function queued(key: string, path: string, read: () => Promise<string>): Promise<Thumb> {
   let found = known.get(key);
   if (!found) {
-    found = last.then(() => draw(row.path));
+    found = last.then(async () => picture(path, await read()));
     last = found.catch(() => undefined);
     known.set(key, found);
   }
   return found;
-}
-
-async function draw(path: string): Promise<Thumb> {
-  const { text } = await server.read(path);
-  return picture(path, text);
 }
 
 export async function picture(path: string, text: string): Promise<Thumb> {

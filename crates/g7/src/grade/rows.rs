@@ -117,7 +117,8 @@ fn work(args: &Grade, exercise: &Exercise, source: Source) -> Graded {
     };
     let bytes = args.memory.saturating_mul(1 << 20);
     let mut clock = WallClock::default();
-    judge(exercise, source, &mut Limits { test: args.timeout, questions: &end, bytes, clock: &mut clock })
+    let limits = &mut Limits { test: args.timeout, questions: &end, bytes, states: None, clock: &mut clock };
+    judge(exercise, source, limits)
 }
 
 /// The groups of submissions that are the same but for names, solutions of the exercise among them. Each row is told the

@@ -21,5 +21,5 @@ mod ways;
 
 pub(crate) use asked::{Limits, Proof, prove};
 pub(crate) use compared::{Both, Compared, compared};
-pub(crate) use rows::Report;
+pub(crate) use rows::{Found, Report};
 pub(crate) use ways::{Ways, Wish, ways};

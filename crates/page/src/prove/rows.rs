@@ -66,10 +66,21 @@ enum About {
 #[derive(Clone, Copy, Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Verdict"))]
 #[serde(rename_all = "snake_case")]
-enum Found {
+pub(crate) enum Found {
     Proved,
     Refuted,
     Open,
+}
+
+impl Found {
+    /// The word for a verdict.
+    pub(crate) fn of(verdict: &Verdict) -> Found {
+        match verdict {
+            Verdict::Proved(_) => Found::Proved,
+            Verdict::Refuted(_) => Found::Refuted,
+            Verdict::Open(_) => Found::Open,
+        }
+    }
 }
 
 /// The answer to one question.
@@ -132,11 +143,7 @@ fn row(file: &File, model: &Model<'_>, number: usize, question: &Question, verdi
         claim: words::claim(written, model.compiled, question),
         own,
         about: about(&question.claim),
-        verdict: match verdict {
-            Verdict::Proved(_) => Found::Proved,
-            Verdict::Refuted(_) => Found::Refuted,
-            Verdict::Open(_) => Found::Open,
-        },
+        verdict: Found::of(verdict),
         reason: words::reason(verdict, time),
         help: match verdict {
             // The panel has a button for it, and no options.

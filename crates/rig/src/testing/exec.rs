@@ -9,7 +9,7 @@ use g7_model::{Nanos, Said, Span, Type, say};
 use super::coverage::Coverage;
 use super::statements::{Check, Does, Line, Plan};
 use crate::Source;
-use crate::{Answer, Bench, Conflicts, Item, fault};
+use crate::{Answer, Bench, Conflicts, Item, Role, fault};
 
 /// The failure of a test, with what helps to understand it.
 #[derive(Clone, Debug, Default)]
@@ -34,6 +34,9 @@ pub struct Defect {
     pub origin: Option<String>,
     /// True if the test was ended because it took too much real time.
     pub overdue: bool,
+    /// The input words that each scan read, from the first scan to the failure. Empty if inputs alone do not lead
+    /// there (something was forced, written or restarted), or if they are too many.
+    pub inputs: Vec<Vec<u64>>,
     expected_at: Option<Span>,
     origin_at: Option<Span>,
 }
@@ -109,6 +112,7 @@ pub(super) fn run<'b>(
         bench,
         runner: bench.runner(seed),
         recording: record.then(|| Recording::new(bench.signals()).with_limit(4_000)),
+        inputs: record.then(Vec::new),
         always: Vec::new(),
         coverage,
         at: Span::default(),
@@ -117,11 +121,14 @@ pub(super) fn run<'b>(
         limit,
     };
     let ended = exec.scan().and_then(|()| exec.block(&plan.lines));
-    let defect = match ended {
+    let mut defect = match ended {
         Ok(()) => None,
         Err(Stop::Failed(defect)) => Some(defect),
         Err(Stop::Fault(halt)) => Some(exec.fault(halt)),
     };
+    if let Some(defect) = &mut defect {
+        defect.inputs = exec.inputs.take().unwrap_or_default();
+    }
     Done { defect, simulated: exec.now(), scans: exec.runner.state().scans(), notes: exec.notes }
 }
 
@@ -129,6 +136,8 @@ struct Exec<'b, 'c, 'l> {
     bench: &'b Bench,
     runner: Runner,
     recording: Option<Recording>,
+    /// The inputs of each scan; none where they do not say how the charts came here.
+    inputs: Option<Vec<Vec<u64>>>,
     /// The conditions of the enclosing `always` blocks.
     always: Vec<&'b Check>,
     coverage: Option<&'c mut Coverage>,
@@ -192,6 +201,7 @@ impl<'b> Exec<'b, '_, '_> {
                     return Ok(());
                 };
                 let value = self.value(item, answer)?;
+                self.inputs = None;
                 self.bench.force(&mut self.runner, item, &value);
                 self.scan()
             }
@@ -202,6 +212,7 @@ impl<'b> Exec<'b, '_, '_> {
                 self.scan()
             }
             Does::Restart { cold } => {
+                self.inputs = None;
                 self.runner.restart(if *cold { Start::Cold } else { Start::Warm });
                 self.scan()
             }
@@ -227,12 +238,24 @@ impl<'b> Exec<'b, '_, '_> {
         if let Some(recording) = &mut self.recording {
             recording.sample(Nanos::new(self.runner.state().now()), self.bench.sample(&self.runner));
         }
+        self.note_inputs();
         done.map_err(Stop::Fault)?;
         self.notes.extend(self.conflicts.of(self.bench, &self.runner));
         for check in self.always.clone() {
             self.expect(check, say!("this did not hold throughout"))?;
         }
         Ok(())
+    }
+
+    /// Notes what the scan has read.
+    fn note_inputs(&mut self) {
+        let read = self.runner.read();
+        if let Some(inputs) = &mut self.inputs {
+            inputs.push(read.to_vec());
+            if inputs.len() * read.len().max(1) > WORDS {
+                self.inputs = None;
+            }
+        }
     }
 
     /// Makes scans until the time has passed.
@@ -248,6 +271,9 @@ impl<'b> Exec<'b, '_, '_> {
         for (item, ask) in puts {
             let (Some(item), answer) = (self.bench.items.get(*item), self.answer(*ask)) else { continue };
             let value = self.value(item, answer)?;
+            if !matches!(item.role, Role::Input(_)) {
+                self.inputs = None;
+            }
             self.bench.set(&mut self.runner, item, &value);
         }
         self.scan()
@@ -434,6 +460,8 @@ impl<'b> Exec<'b, '_, '_> {
 const GROUPS: [&str; 4] = ["steps", "outputs", "inputs", "variables"];
 /// Most lanes of a failure's chronogram.
 const LANES: usize = 14;
+/// Most input words that are noted of a test.
+const WORDS: usize = 1 << 20;
 
 /// Converts a word of one type to the type of an item; `None` if the value does not fit.
 fn convert(word: u64, from: Type, item: &Item) -> Option<Value> {
