@@ -1,11 +1,13 @@
 // The exercises that come with the page, the student's files for them, and the check of a work. A worker of its own checks,
 // so that gestures are answered meanwhile; it is ended where it takes too long.
+import { openSheet } from '../frame/sheets';
 import { drafts } from '../lib/drafts.svelte';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
 import { Local } from '../lib/page';
 import { prefs } from '../lib/prefs.svelte';
 import type { ExerciseChecked, ExercisePacked, ExerciseTexts } from '../lib/protocol';
+import { shape } from '../lib/shape.svelte';
 import { shell } from '../lib/shell.svelte';
 import { speech } from '../lib/speech.svelte';
 import { summary } from './told';
@@ -61,6 +63,15 @@ class Exercises {
   /** The texts of an exercise in the language of the page. */
   texts(of: Exercise): ExerciseTexts | null {
     return of.texts.find((one) => one.language === prefs.language) ?? of.texts[0] ?? null;
+  }
+
+  /** Opens an exercise with its panel. */
+  async show(exercise: Exercise): Promise<void> {
+    shell.gallery = false;
+    await shell.try(() => this.open(exercise));
+    shell.tabs.right = 'exercise';
+    if (shape.phone) openSheet('right');
+    else prefs.rightOpen = true;
   }
 
   /** Opens the student's file of an exercise; the first time with the template. */
