@@ -11,6 +11,7 @@ use std::sync::Arc;
 use g7_compile::Held;
 use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
+use g7_compile::symbols::activity;
 use g7_engine::{Addr, FaultKind, GroupId, State, StepId};
 use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Sample, Signal, Value, read_text, write_text};
 use g7_model::{Nanos, Said, Span, Type, say};
@@ -78,19 +79,7 @@ pub struct StepItem {
 impl StepItem {
     /// The name of its step variable in the language: `X12`, `G.X12`, `XM3`, `Fill.X`.
     pub fn activity(&self) -> String {
-        let (before, last) = match self.name.rsplit_once('.') {
-            Some((before, last)) => (format!("{before}."), last),
-            None => (String::new(), self.name.as_str()),
-        };
-        let digits = match self.id {
-            Activity::Step(_) => last,
-            Activity::Macro(_) => last.strip_prefix('M').unwrap_or(last),
-        };
-        if digits.starts_with(|c: char| c.is_ascii_digit()) {
-            format!("{before}X{last}")
-        } else {
-            format!("{before}{last}.X")
-        }
+        activity(&self.name, matches!(self.id, Activity::Macro(_)))
     }
 }
 
