@@ -151,12 +151,13 @@ impl Player {
 }
 
 const HEAD: &str = "g7 tape 3";
-/// The beginning of a record in every version.
-const ANY_HEAD: &str = "g7 tape ";
 /// The last line of a record, before the number of its scans.
 const END: &str = "end ";
 
 impl Tape {
+    /// The beginning of a record as text, in every version.
+    pub const SIGN: &str = "g7 tape ";
+
     /// An empty tape, for a program before its first scan.
     pub fn new(program: &Program) -> Tape {
         let rows = program.tables().inputs;
@@ -299,7 +300,7 @@ impl Tape {
     pub fn from_text(text: &str) -> Result<Tape, TapeError> {
         let mut lines = (1..).zip(text.lines());
         let first = lines.next().map_or("", |(_, line)| line);
-        if !first.starts_with(ANY_HEAD) {
+        if !first.starts_with(Tape::SIGN) {
             return Err(TapeError::Other);
         }
         let head = first.strip_prefix(HEAD).ok_or(TapeError::Version)?;

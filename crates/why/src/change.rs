@@ -9,8 +9,8 @@ use crate::Why;
 use crate::answer::{Cause, Fact};
 use crate::look::{Look, Part};
 use crate::parts::steps_of;
-use crate::past::{Pos, Signal};
 use crate::reason::Decisive;
+use crate::signal::{Pos, Signal};
 use crate::text::{at, truth};
 use crate::trail::{Event, Trail, Way};
 
@@ -91,7 +91,7 @@ impl Why<'_> {
     }
 
     /// The sentence about a signal that never changed.
-    pub(crate) fn from_start(&self, signal: Signal) -> Cause {
+    pub(crate) fn from_start(&self, signal: Signal, follow: bool) -> Cause {
         let look = self.past.look(0);
         let on = signal.of(self.past.program, look.before(0)) != 0;
         let (said, place) = match signal {
@@ -117,7 +117,9 @@ impl Why<'_> {
                 (say!("`{text}` is {} since the start", truth(on)), place)
             }
         };
-        Cause::new(said, Fact::Start, self.past.time(0), [place])
+        let mut cause = Cause::new(said, Fact::Start, self.past.time(0), [place]);
+        cause.aside = !follow;
+        cause
     }
 
     pub(crate) fn is_input(&self, signal: Signal) -> bool {
@@ -163,7 +165,7 @@ impl Why<'_> {
                 let moved = operands.iter().filter(|s| look.changes(self.past.program, **s, change.stage));
                 moved.take(STEPS).map(|s| self.event(*s, change, at_once, trail)).collect()
             }
-            None => operands.iter().take(STEPS).map(|s| self.from_start(*s)).collect(),
+            None => operands.iter().take(STEPS).map(|s| self.from_start(*s, false)).collect(),
         };
         if at_once {
             return standing;
@@ -214,8 +216,10 @@ impl Why<'_> {
         if let Some(order) = forces {
             let name = self.names.step(order.step);
             let said = say!("the forcing order of step `{name}` imposes the situation");
-            let cause = Cause::new(said, Fact::Order, self.time(pos), [self.names.symbols().step_place(order.step)]);
-            let gave = self.earlier(pos).map(|before| self.standing(Signal::Step(order.step), before, true, trail));
+            let cause =
+                Cause::new(said, Fact::Order, self.time(pos), [self.names.symbols().step_place(order.step)]);
+            let gave =
+                self.earlier(pos).map(|before| self.standing(Signal::Step(order.step), before, true, trail));
             return cause.because(gave);
         }
         self.enclosing(step, on, pos, look, trail)
@@ -227,9 +231,14 @@ impl Why<'_> {
         let t = p.tables();
         let brings = |outer: &StepId| {
             let row = t.steps.get(outer.0 as usize).and_then(|s| t.extras.get(s.extra as usize));
-            let Some(extra) = row.filter(|_| look.changes(p, Signal::Step(*outer), pos.stage)) else { return false };
+            let Some(extra) = row.filter(|_| look.changes(p, Signal::Step(*outer), pos.stage)) else {
+                return false;
+            };
             if on {
-                t.arcs.get(extra.links.start as usize..extra.links.end as usize).unwrap_or(&[]).contains(&step)
+                t.arcs
+                    .get(extra.links.start as usize..extra.links.end as usize)
+                    .unwrap_or(&[])
+                    .contains(&step)
             } else {
                 let groups = t.group_lists.get(extra.encloses.start as usize..extra.encloses.end as usize);
                 groups.unwrap_or(&[]).iter().any(|g| steps_of(p, *g).any(|s| s == step))
@@ -253,8 +262,12 @@ impl Why<'_> {
     pub(crate) fn clearing(&self, rank: u32, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
         let then = at(self.time(pos));
         let said = say!("the transition `{}` cleared at {then}", self.names.transition(rank));
-        let mut cause =
-            Cause::new(said, Fact::Cleared(rank), self.time(pos), [self.names.symbols().transition_place(rank)]);
+        let mut cause = Cause::new(
+            said,
+            Fact::Cleared(rank),
+            self.time(pos),
+            [self.names.symbols().transition_place(rank)],
+        );
         if !follow {
             cause.aside = true;
             return cause;
@@ -299,11 +312,17 @@ impl Why<'_> {
             let last = by_step && *since == enabled;
             causes.push(match since {
                 Some(since) => self.event(Signal::Step(*step), *since, last, trail),
-                None => self.from_start(Signal::Step(*step)),
+                None => self.from_start(Signal::Step(*step), last),
             });
         }
-        // First what is followed.
+        // First what is followed; a step that its own receptivity reads is told once.
         causes.sort_by_key(|c| c.aside);
+        let mut told: Vec<(Fact, Nanos)> = Vec::new();
+        causes.retain(|c| {
+            let known = told.contains(&(c.fact, c.now));
+            told.push((c.fact, c.now));
+            !(known && c.aside && matches!(c.fact, Fact::Step(..)))
+        });
         causes
     }
 
@@ -318,6 +337,12 @@ impl Why<'_> {
 
     /// Where the declaration of a code's first word is of no help, the place of an action (rank).
     pub(crate) fn action_place(&self, action: u32) -> Span {
-        self.names.symbols().actions.get(action as usize).filter(|a| !a.hidden).map(|a| a.at).unwrap_or_default()
+        self.names
+            .symbols()
+            .actions
+            .get(action as usize)
+            .filter(|a| !a.hidden)
+            .map(|a| a.at)
+            .unwrap_or_default()
     }
 }

@@ -32,6 +32,7 @@ mod parts;
 mod past;
 mod questions;
 mod reason;
+mod signal;
 mod text;
 mod trail;
 mod writers;
@@ -126,6 +127,11 @@ impl<'a> Why<'a> {
     pub fn span(&self) -> Option<(Nanos, Nanos)> {
         let last = self.past.scans().checked_sub(1)?;
         Some((self.past.time(0), self.past.time(last)))
+    }
+
+    /// The number of scans that the answers so far have made again: what they cost, on any machine.
+    pub fn again(&self) -> u64 {
+        self.past.again()
     }
 
     /// Answers a question about the last scan at or before an instant.

@@ -3,7 +3,7 @@
 use g7_engine::{Program, State, begin, finish, judged, pass};
 use g7_host::{Player, Tape};
 
-use crate::past::Signal;
+use crate::signal::Signal;
 
 /// Passes of a scan that are kept; a longer search goes on without.
 const PASSES: usize = 200;
@@ -89,7 +89,10 @@ impl Look {
 
     fn add(&mut self, part: Part, state: &State, judged: Option<State>, reports: bool) {
         let (cleared, ran) = if reports {
-            (if matches!(part, Part::Pass(_)) { state.cleared().to_vec() } else { Vec::new() }, state.ran().to_vec())
+            (
+                if matches!(part, Part::Pass(_)) { state.cleared().to_vec() } else { Vec::new() },
+                state.ran().to_vec(),
+            )
         } else {
             (Vec::new(), Vec::new())
         };

@@ -7,7 +7,7 @@ use g7_compile::Compiled;
 use g7_compile::tree::{Clock, Expr, ExprKind, Gate, Stmt, StmtKind, Target};
 use g7_engine::{Addr, Code, Program, State, StepId, WatchId, eval};
 
-use crate::past::Signal;
+use crate::signal::Signal;
 
 /// Codes of parts, by the place of the part in the program's trees.
 pub(crate) struct Parts {
@@ -42,11 +42,15 @@ impl Parts {
         }
         found.retain(|e| read(e).is_none());
         let made = g7_compile::lower::with_parts(&compiled.program, found.iter().copied());
+        // Its code runs on states of the first program.
+        let fits = |program: &Program| {
+            State::new(program).image().len() == State::new(&compiled.program).image().len()
+        };
         match made {
-            Some((program, codes)) => {
+            Some((program, codes)) if fits(&program) => {
                 Parts { program: Some(program), codes: found.iter().map(|e| key(e)).zip(codes).collect() }
             }
-            None => Parts { program: None, codes: BTreeMap::new() },
+            _ => Parts { program: None, codes: BTreeMap::new() },
         }
     }
 
@@ -177,7 +181,9 @@ fn seek<'e>(list: &'e [Stmt], addr: Addr, round: &mut Vec<&'e Expr>, found: &mut
     for s in list {
         let writes = match &s.kind {
             StmtKind::Store(_, Target::Word(to), e) => within(*to, 1).then(|| vec![e]),
-            StmtKind::Store(_, Target::Element(base, len, index), e) => within(*base, *len).then(|| vec![index, e]),
+            StmtKind::Store(_, Target::Element(base, len, index), e) => {
+                within(*base, *len).then(|| vec![index, e])
+            }
             StmtKind::StoreText(to, cap, e) => within(*to, 1 + u32::from(*cap).div_ceil(8)).then(|| vec![e]),
             StmtKind::Fb(block, base) => within(*base, block.words()).then(Vec::new),
             StmtKind::If(arms, other) => {
@@ -219,7 +225,9 @@ fn stmt_exprs(s: &Stmt) -> Vec<&Expr> {
         | StmtKind::LeaveUnless(e) => vec![e],
         StmtKind::If(arms, _) => arms.iter().map(|(e, _)| e).collect(),
         StmtKind::Loop(_, until) => until.iter().collect(),
-        StmtKind::Body(_) | StmtKind::Leave | StmtKind::Return | StmtKind::Fb(..) | StmtKind::Service(_) => Vec::new(),
+        StmtKind::Body(_) | StmtKind::Leave | StmtKind::Return | StmtKind::Fb(..) | StmtKind::Service(_) => {
+            Vec::new()
+        }
     }
 }
 
@@ -253,7 +261,9 @@ fn placed<'e>(e: &'e Expr, lists: &mut Vec<&'e [Stmt]>) {
             placed(a, lists);
             placed(b, lists);
         }
-        ExprKind::Call(_, _, args) | ExprKind::TextCall { args, .. } => args.iter().for_each(|a| placed(a, lists)),
+        ExprKind::Call(_, _, args) | ExprKind::TextCall { args, .. } => {
+            args.iter().for_each(|a| placed(a, lists))
+        }
         ExprKind::Const(..)
         | ExprKind::Text(..)
         | ExprKind::Word(..)

@@ -3,15 +3,16 @@
 //! Between two marks stands a set of the words and steps that changed, so that the last change of a signal is found
 //! without the scans in which it stood still. The number of marks is bounded; a longer run has them farther apart.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
 use std::rc::Rc;
 
-use g7_engine::{Addr, GroupId, Program, State, StepId, WatchId};
+use g7_engine::{Program, State, StepId, WatchId};
 use g7_host::{Divergence, Player, Tape};
 use g7_model::Nanos;
 
 use crate::look::Look;
+use crate::signal::{Pos, Signal};
 
 /// Most words of all marks together.
 const ROOM: usize = 1 << 23;
@@ -19,33 +20,6 @@ const ROOM: usize = 1 << 23;
 const EVERY: usize = 64;
 /// Most scans that are kept pass by pass.
 const LOOKS: usize = 64;
-
-/// A value of a state that can be followed through a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Signal {
-    Word(Addr),
-    Step(StepId),
-    Group(GroupId),
-    Timer(WatchId),
-}
-
-impl Signal {
-    pub(crate) fn of(self, p: &Program, s: &State) -> u64 {
-        match self {
-            Signal::Word(addr) => s.word(addr),
-            Signal::Step(step) => u64::from(s.is_active(step)),
-            Signal::Group(group) => u64::from(s.group_active(p, group)),
-            Signal::Timer(watch) => u64::from(s.timer(p, watch)),
-        }
-    }
-}
-
-/// A moment of a run: a scan, and within it one of [`Look::stages`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Pos {
-    pub(crate) scan: usize,
-    pub(crate) stage: usize,
-}
 
 struct Mark {
     player: Player,
@@ -61,6 +35,8 @@ pub(crate) struct Past<'a> {
     marks: Vec<Mark>,
     times: Vec<Nanos>,
     looks: RefCell<BTreeMap<usize, Rc<Look>>>,
+    /// Scans that were made again for answers.
+    again: Cell<u64>,
 }
 
 impl<'a> Past<'a> {
@@ -76,8 +52,15 @@ impl<'a> Past<'a> {
         let timers = (0..).map(WatchId).zip(&program.tables().watches);
         let mut timers: Vec<(WatchId, bool)> =
             timers.filter(|(_, w)| w.times.is_some()).map(|(id, _)| (id, false)).collect();
-        let mut past =
-            Past { program, tape, every, marks: Vec::new(), times: Vec::new(), looks: RefCell::default() };
+        let mut past = Past {
+            program,
+            tape,
+            every,
+            marks: Vec::new(),
+            times: Vec::new(),
+            looks: RefCell::default(),
+            again: Cell::new(0),
+        };
         let mut before: Vec<u64> = player.state().words().to_vec();
         let mut active: Vec<StepId> = Vec::new();
         loop {
@@ -119,6 +102,16 @@ impl<'a> Past<'a> {
         Ok(past)
     }
 
+    /// The number of scans that answers have made again so far.
+    pub(crate) fn again(&self) -> u64 {
+        self.again.get()
+    }
+
+    fn scan(&self, player: &mut Player) -> Option<()> {
+        self.again.set(self.again.get() + 1);
+        player.scan(self.tape, self.program).ok()
+    }
+
     /// The number of scans.
     pub(crate) fn scans(&self) -> usize {
         self.times.len()
@@ -137,7 +130,7 @@ impl<'a> Past<'a> {
     /// The state behind a scan.
     pub(crate) fn behind(&self, scan: usize) -> State {
         let mut player = self.before(scan);
-        player.scan(self.tape, self.program).ok();
+        self.scan(&mut player);
         player.state().clone()
     }
 
@@ -146,7 +139,7 @@ impl<'a> Past<'a> {
         let mark = self.marks.get(scan / self.every).or(self.marks.last());
         let mut player = mark.map_or_else(|| Player::new(self.program), |m| m.player.clone());
         while player.scans() < scan {
-            player.scan(self.tape, self.program).ok();
+            self.scan(&mut player);
         }
         player
     }
@@ -204,9 +197,10 @@ impl<'a> Past<'a> {
         match signal {
             Signal::Word(addr) => bit(addr.0 as usize),
             Signal::Step(step) => bit(words + step.0 as usize),
-            Signal::Group(group) => t.groups.get(group.0 as usize).is_some_and(|g| {
-                (g.steps.start..g.steps.end).any(|step| bit(words + step as usize))
-            }),
+            Signal::Group(group) => t
+                .groups
+                .get(group.0 as usize)
+                .is_some_and(|g| (g.steps.start..g.steps.end).any(|step| bit(words + step as usize))),
             Signal::Timer(watch) => bit(words + steps + watch.0 as usize),
         }
     }
@@ -218,7 +212,7 @@ impl<'a> Past<'a> {
         let (mut before, mut found) = (values(player.state()), None);
         while player.scans() < end {
             let scan = player.scans();
-            player.scan(self.tape, self.program).ok()?;
+            self.scan(&mut player)?;
             let now = values(player.state());
             if now != before {
                 found = Some(scan);

@@ -6,13 +6,15 @@ use g7_model::{Said, say};
 
 use crate::answer::{Cause, Fact};
 use crate::look::{Look, Part, Stage};
-use crate::past::{Pos, Signal};
+use crate::signal::{Pos, Signal};
 use crate::text::at;
 use crate::trail::Trail;
 use crate::{Question, Why};
 
 /// Most sentences of one kind in the answer about a scan.
 const MANY: usize = 40;
+/// Transitions that lead to a step, of which the answer about it tells.
+const LEADING: usize = 2;
 
 impl Why<'_> {
     pub(crate) fn answer(&self, question: Question, scan: usize) -> Cause {
@@ -20,18 +22,57 @@ impl Why<'_> {
         let trail = &mut Trail::whole();
         match question {
             Question::Scan => self.scan(scan),
-            Question::Step(step) => self.standing(Signal::Step(step), end, true, trail),
+            Question::Step(step) => self.step(step, end, trail),
             Question::Group(group) => self.standing(Signal::Group(group), end, true, trail),
             Question::Transition(rank) => self.transition(rank, scan, trail),
             Question::Variable(addr, words) => self.variable(addr, words, end, trail),
         }
     }
 
+    /// Why a step is active; why it is not, with the enabled transitions that lead to it and do not clear.
+    fn step(&self, step: StepId, end: Pos, trail: &mut Trail) -> Cause {
+        let standing = self.standing(Signal::Step(step), end, true, trail);
+        let look = self.past.look(end.scan);
+        if look.after(end.stage).is_active(step) {
+            return standing;
+        }
+        let (name, place) = (self.names.step(step), self.names.symbols().step_place(step));
+        let said = say!("step `{name}` is not active at {}", at(self.time(end)));
+        let mut cause =
+            Cause::new(said, Fact::Step(step, false), self.time(end), [place]).because([standing]);
+        if let Some((stage, state)) = judging(&look) {
+            let enabled = |rank: &u32| self.preceding(*rank).iter().all(|s| state.is_active(*s));
+            let leading = self.leading(step).into_iter().filter(enabled).filter(|r| !clears(&look, *r));
+            for rank in leading.take(LEADING) {
+                let waits = self.waits(rank, end.scan);
+                let waits_for = self.waits_for(rank, Pos { scan: end.scan, stage }, state, trail);
+                cause.causes.push(waits.because(waits_for));
+            }
+        }
+        cause
+    }
+
+    /// The transitions of the text that lead to a step.
+    fn leading(&self, step: StepId) -> Vec<u32> {
+        let t = self.past.program.tables();
+        let more = |rows: g7_engine::Rows| t.arcs.get(rows.start as usize..rows.end as usize).unwrap_or(&[]);
+        let rows = (0..).zip(&t.transitions);
+        let rows = rows.filter(|(_, row)| row.to == step || more(row.more_to).contains(&step));
+        rows.map(|(rank, _)| rank).filter(|rank| self.names.symbols().is_written(*rank)).collect()
+    }
+
+    /// The sentence about a transition that does not clear in a scan.
+    fn waits(&self, rank: u32, scan: usize) -> Cause {
+        let now = self.past.time(scan);
+        let said = say!("the transition `{}` does not clear at {}", self.names.transition(rank), at(now));
+        Cause::new(said, Fact::Waits(rank), now, [self.names.symbols().transition_place(rank)])
+    }
+
     /// The last change of a variable, of whichever of its words changed last.
     fn variable(&self, addr: Addr, words: u32, end: Pos, trail: &mut Trail) -> Cause {
         let signals: Vec<Signal> = (0..words.max(1)).map(|i| Signal::Word(Addr(addr.0 + i))).collect();
         let Some(change) = self.past.last_change(&signals, end) else {
-            return self.from_start(Signal::Word(addr));
+            return self.from_start(Signal::Word(addr), true);
         };
         let look = self.past.look(change.scan);
         let moved = signals.iter().find(|s| look.changes(self.past.program, **s, change.stage));
@@ -41,13 +82,11 @@ impl Why<'_> {
     /// Why a transition does not clear in a scan, or why it clears.
     fn transition(&self, rank: u32, scan: usize, trail: &mut Trail) -> Cause {
         let look = self.past.look(scan);
-        let clears = |s: &Stage| s.cleared.contains(&rank);
-        if let Some(stage) = look.stages.iter().rposition(clears) {
+        if let Some(stage) = look.stages.iter().rposition(|s| s.cleared.contains(&rank)) {
             return self.clearing(rank, Pos { scan, stage }, true, trail);
         }
         let now = self.past.time(scan);
-        let said = say!("the transition `{}` does not clear at {}", self.names.transition(rank), at(now));
-        let cause = Cause::new(said, Fact::Waits(rank), now, [self.names.symbols().transition_place(rank)]);
+        let cause = self.waits(rank, scan);
         let Some((stage, state)) = judging(&look) else {
             let said = say!("a fault stopped the program: nothing clears");
             return cause.because([Cause::new(said, Fact::Fault, now, [])]);
@@ -68,9 +107,8 @@ impl Why<'_> {
             causes.push(Cause::new(said, Fact::Order, self.time(pos), []));
         }
         let receptivity = self.names.receptivity(rank);
-        let false_one = receptivity.as_ref().filter(|e| {
-            self.parts.holds(self.past.program, e, state) == Some(false)
-        });
+        let false_one =
+            receptivity.as_ref().filter(|e| self.parts.holds(self.past.program, e, state) == Some(false));
         if let Some(e) = false_one {
             let parts = self.decisive(e, state, before);
             causes.extend(parts.iter().map(|d| self.part(d, before, off.is_empty(), trail)));
@@ -84,7 +122,9 @@ impl Why<'_> {
                     "the transition `{}` has priority and cleared in its place",
                     self.names.transition(other)
                 ),
-                None => say!("it is enabled, and its receptivity `{text}` is TRUE: it clears in the next scan"),
+                None => {
+                    say!("it is enabled, and its receptivity `{text}` is TRUE: it clears in the next scan")
+                }
             };
             causes.push(Cause::new(said, Fact::Order, self.time(pos), [place]));
         }
@@ -149,7 +189,9 @@ impl Why<'_> {
             let place = self.names.symbols().transition_place(rank);
             let mut trail = Trail::short(0);
             if row.cleared.contains(&rank) {
-                let said = say!("the transition `{name}` is enabled and its receptivity is TRUE: it clears (rule 2)");
+                let said = say!(
+                    "the transition `{name}` is enabled and its receptivity is TRUE: it clears (rule 2)"
+                );
                 let parts = self.reasons(rank, row, pos, &mut trail);
                 found.push(Cause::new(said, Fact::Cleared(rank), now, [place]).because(parts));
             } else {
@@ -165,7 +207,9 @@ impl Why<'_> {
     /// The parts that make the receptivity of a cleared transition TRUE.
     fn reasons(&self, rank: u32, row: &Stage, pos: Pos, trail: &mut Trail) -> Vec<Cause> {
         let before = self.earlier(pos).unwrap_or(pos);
-        let Some((e, state)) = self.names.receptivity(rank).zip(row.judged.as_ref()) else { return Vec::new() };
+        let Some((e, state)) = self.names.receptivity(rank).zip(row.judged.as_ref()) else {
+            return Vec::new();
+        };
         self.decisive(&e, state, before).iter().map(|d| self.part(d, before, false, trail)).collect()
     }
 
@@ -174,13 +218,17 @@ impl Why<'_> {
         let (p, s) = (self.past.program, self.names.symbols());
         let steps = (0..s.steps()).map(StepId).filter(|id| s.is_listed(*id)).map(Signal::Step);
         let locals = p.tables().locals;
-        let words = s.variables.iter().filter(|v| !(locals.start..locals.end).contains(&v.addr.0));
-        let words = words.flat_map(|v| (v.addr.0..v.addr.0.saturating_add(v.words())).map(Addr));
-        let mut signals: Vec<Signal> = steps.chain(words.map(Signal::Word)).collect();
-        signals.retain(|signal| look.changes(p, *signal, pos.stage));
-        let mut told = std::collections::BTreeSet::new();
-        // An instance and its members are the same words.
-        signals.retain(|signal| told.insert(*signal));
+        let own = s
+            .variables
+            .iter()
+            .filter(|v| v.ty.holds().is_some() && !(locals.start..locals.end).contains(&v.addr.0));
+        // A text is told once, by the first of its words that changed.
+        let words = own.filter_map(|v| {
+            let mut words = (v.addr.0..v.addr.0.saturating_add(v.words())).map(|a| Signal::Word(Addr(a)));
+            words.find(|signal| look.changes(p, *signal, pos.stage))
+        });
+        let mut signals: Vec<Signal> =
+            steps.filter(|signal| look.changes(p, *signal, pos.stage)).chain(words).collect();
         let left = signals.len().saturating_sub(MANY);
         signals.truncate(MANY);
         let mut found: Vec<Cause> =
@@ -191,6 +239,11 @@ impl Why<'_> {
         }
         found
     }
+}
+
+/// True if a transition clears in a scan.
+fn clears(look: &Look, rank: u32) -> bool {
+    look.stages.iter().any(|s| s.cleared.contains(&rank))
 }
 
 /// The last pass of a scan, and the state in which it judged the transitions.

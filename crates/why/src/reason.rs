@@ -6,7 +6,7 @@ use g7_model::say;
 
 use crate::answer::{Cause, Fact};
 use crate::parts::{Operands, watched};
-use crate::past::{Pos, Signal};
+use crate::signal::{Pos, Signal};
 use crate::text::{at, truth};
 use crate::trail::Trail;
 use crate::{Why, parts};
@@ -127,7 +127,13 @@ impl Why<'_> {
     }
 
     /// The scan in which a time gave a part its value, behind the last change of its operands.
-    fn timed(&self, e: &Expr, value: bool, (from, to): (Option<Pos>, Pos), operands: &Operands) -> Option<Since> {
+    fn timed(
+        &self,
+        e: &Expr,
+        value: bool,
+        (from, to): (Option<Pos>, Pos),
+        operands: &Operands,
+    ) -> Option<Since> {
         if operands.clocks.is_empty() {
             return None;
         }
@@ -157,10 +163,10 @@ impl Why<'_> {
 
     /// The sentence about a decisive part, with its causes where they are followed.
     pub(crate) fn part(&self, d: &Decisive<'_>, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
-        if let Some(signal) = parts::read(d.part)
-            && let Since::Change(change) = d.since
-        {
-            return self.event(signal, change, follow, trail);
+        match (parts::read(d.part), d.since) {
+            (Some(signal), Since::Change(change)) => return self.event(signal, change, follow, trail),
+            (Some(signal), Since::Start) => return self.from_start(signal, follow),
+            _ => {}
         }
         let (text, value) = (self.names.expr(d.part), truth(d.value));
         let places = [d.part.at];
@@ -171,7 +177,10 @@ impl Why<'_> {
             Since::Change(_) => (say!("`{text}` is {value} since {then}"), Fact::Part(d.value)),
             Since::Time(_) => (say!("`{text}` is {value} since {then}: the time was over"), Fact::Time),
             Since::Edge(_) => (say!("`{text}` is {value} at {then}"), Fact::Part(d.value)),
-            Since::NoEdge => (say!("`{text}` is FALSE: there is no edge at {}", at(self.past.time(pos.scan))), Fact::Part(false)),
+            Since::NoEdge => (
+                say!("`{text}` is FALSE: there is no edge at {}", at(self.past.time(pos.scan))),
+                Fact::Part(false),
+            ),
             Since::Long(_) => (say!("`{text}` is {value} since {then} or longer"), Fact::Bound),
         };
         let now = if d.since == Since::NoEdge { self.past.time(pos.scan) } else { now };
@@ -189,7 +198,8 @@ impl Why<'_> {
             Since::Change(change) | Since::Edge(change) if follow => {
                 let look = self.past.look(change.scan);
                 let changed = |s: &&Signal| look.changes(self.past.program, **s, change.stage);
-                let changed: Vec<Signal> = operands.signals.iter().filter(changed).take(OPERANDS).copied().collect();
+                let changed: Vec<Signal> =
+                    operands.signals.iter().filter(changed).take(OPERANDS).copied().collect();
                 changed.into_iter().map(|s| self.event(s, change, true, trail)).collect()
             }
             // The times and the values that stand beside them, without their causes.
@@ -205,7 +215,7 @@ impl Why<'_> {
     pub(crate) fn standing(&self, signal: Signal, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
         match self.past.last_change(&[signal], pos) {
             Some(change) => self.event(signal, change, follow, trail),
-            None => self.from_start(signal),
+            None => self.from_start(signal, follow),
         }
     }
 }
@@ -213,7 +223,8 @@ impl Why<'_> {
 /// Of the sides of a gate those stay marked that gave it its value: where one alone decides it, the side that came
 /// first; otherwise the one that came last.
 fn last_of(sides: &mut [Vec<Decisive<'_>>], alone: bool) {
-    let came = |side: &[Decisive<'_>]| side.iter().filter(|d| d.last).map(|d| d.since.pos()).max().unwrap_or(None);
+    let came =
+        |side: &[Decisive<'_>]| side.iter().filter(|d| d.last).map(|d| d.since.pos()).max().unwrap_or(None);
     let times: Vec<Option<Pos>> = sides.iter().map(|s| came(s)).collect();
     let chosen = if alone { times.iter().min() } else { times.iter().max() }.copied();
     for (side, time) in sides.iter_mut().zip(&times) {

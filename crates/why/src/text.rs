@@ -28,11 +28,11 @@ impl<'a> Names<'a> {
 
     /// The name of a word: of a variable, an element of a table or a member.
     pub(crate) fn word(&self, addr: Addr) -> String {
-        let Some(v) = self.symbols().variable_at(addr) else { return "…".to_owned() };
-        let exact = self.symbols().variables.iter().find(|v| v.addr == addr && v.elements == 1);
-        if let Some(v) = exact.filter(|v| v.ty != Type::Bool || v.words() == 1) {
+        let mut all = self.symbols().variables.iter();
+        if let Some(v) = all.find(|v| v.addr == addr && v.words() == 1) {
             return v.name.to_string();
         }
+        let Some(v) = self.symbols().variable_at(addr) else { return "…".to_owned() };
         let each = v.words().checked_div(v.elements).unwrap_or(1).max(1);
         match v.elements {
             0 | 1 => v.name.to_string(),
@@ -47,7 +47,8 @@ impl<'a> Names<'a> {
 
     /// The value of a word in a state, as one writes it.
     pub(crate) fn value(&self, addr: Addr, state: &State) -> Said {
-        let Some(v) = self.symbols().variable_at(addr) else { return Said::foreign("…") };
+        let own = self.symbols().variables.iter().find(|v| v.addr == addr && v.words() == 1);
+        let Some(v) = own.or_else(|| self.symbols().variable_at(addr)) else { return Said::foreign("…") };
         if let Type::String(_) = v.ty {
             return Said::foreign(format!("'{}'", read_text(state.words(), v.addr.0)));
         }
@@ -207,9 +208,8 @@ impl<'a> Names<'a> {
 
     fn timer(&self, watch: WatchId, out: &mut String) {
         let times = self.compiled.program.tables().watches.get(watch.0 as usize).and_then(|w| w.times);
-        let (on, off) = times.map_or((None, None), |(on, off)| {
-            (self.compiled.condition(on), self.compiled.condition(off))
-        });
+        let (on, off) = times
+            .map_or((None, None), |(on, off)| (self.compiled.condition(on), self.compiled.condition(off)));
         if let Some(on) = on {
             self.write(on, out, TIGHT);
         }

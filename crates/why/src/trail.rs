@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use crate::past::{Pos, Signal};
+use crate::signal::{Pos, Signal};
 
 /// Most sentences that are followed in one answer.
 const MOST: u32 = 200;

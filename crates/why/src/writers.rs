@@ -3,14 +3,14 @@
 
 use g7_compile::tree::{Expr, Piece};
 use g7_engine::{Addr, Code, NONE, StepId};
-use g7_model::{Said, Span, say};
+use g7_model::{Qualifier, Said, Span, say};
 
 use crate::Why;
 use crate::answer::{Cause, Fact};
 use crate::look::{Look, Part};
 use crate::owners::Moment;
 use crate::parts::{Operands, Writing, inner, writings};
-use crate::past::{Pos, Signal};
+use crate::signal::{Pos, Signal};
 use crate::trail::Trail;
 
 /// Pieces of code that are told where several may have written.
@@ -40,7 +40,9 @@ impl Why<'_> {
             }
         }
         found.extend(self.direct(addr, pos, &look, trail));
-        if stage.part == Part::Finish && found.len() < WRITERS {
+        if stage.part == Part::Finish && found.len() < WRITERS
+            || found.is_empty() && stage.part != Part::Begin
+        {
             found.extend(self.by_block(addr, pos, trail));
         }
         if stage.part == Part::Begin {
@@ -64,13 +66,13 @@ impl Why<'_> {
         let mut rows = rows.filter(|(_, row)| row.direct == addr && addr.0 != NONE);
         let (step, _) = rows.find(|(s, _)| look.changes(p, Signal::Step(*s), pos.stage))?;
         let on = look.after(pos.stage).is_active(step);
-        let cause = self.acts("N", step, on, pos);
+        let cause = self.acts(Qualifier::N, step, on, pos);
         Some(cause.because([self.event(Signal::Step(step), pos, true, trail)]))
     }
 
     /// The sentence about a continuous action that begins or ends to act.
-    pub(crate) fn acts(&self, qualifier: &str, step: StepId, on: bool, pos: Pos) -> Cause {
-        let (qualifier, name) = (Said::foreign(qualifier), self.names.step(step));
+    pub(crate) fn acts(&self, qualifier: Qualifier, step: StepId, on: bool, pos: Pos) -> Cause {
+        let (qualifier, name) = (Said::foreign(qualifier.name()), self.names.step(step));
         let said = if on {
             say!("the action {qualifier} of step `{name}` acts on it")
         } else {
@@ -100,7 +102,7 @@ impl Why<'_> {
         Some(cause.because(self.read_by(&writings, addr, pos, trail)))
     }
 
-    /// The operands of assignments that changed last, in this scan.
+    /// The operands of assignments that changed last, in this scan or the one before.
     fn read_by(&self, writings: &[Writing<'_>], addr: Addr, pos: Pos, trail: &mut Trail) -> Vec<Cause> {
         let mut operands = Operands::default();
         let reads = writings.iter().flat_map(|w| &w.reads);
@@ -111,7 +113,8 @@ impl Why<'_> {
         operands.signals.sort_unstable();
         operands.signals.dedup();
         operands.signals.retain(|s| *s != Signal::Word(addr));
-        let Some(change) = self.past.last_change(&operands.signals, pos).filter(|c| c.scan == pos.scan) else {
+        let Some(change) = self.past.last_change(&operands.signals, pos).filter(|c| c.scan + 1 >= pos.scan)
+        else {
             return Vec::new();
         };
         let look = self.past.look(change.scan);
@@ -168,7 +171,9 @@ impl Why<'_> {
         };
         match moment {
             Moment::Activation(step) => turned(step, true) || self.crossed(step, true, pos, look).is_some(),
-            Moment::Deactivation(step) => turned(step, false) || self.crossed(step, false, pos, look).is_some(),
+            Moment::Deactivation(step) => {
+                turned(step, false) || self.crossed(step, false, pos, look).is_some()
+            }
             Moment::Event(step, code) => {
                 let state = look.stages.get(pos.stage).and_then(|s| s.judged.as_ref());
                 let holds = |state| self.compiled.condition(code).and_then(|e| self.parts.holds(p, e, state));
@@ -188,7 +193,10 @@ impl Why<'_> {
                 return vec![why.event(Signal::Step(step), pos, true, trail)];
             }
             // It was left and entered at once, so its activity did not change.
-            why.crossed(step, leads, pos, look).map(|rank| why.clearing(rank, pos, true, trail)).into_iter().collect()
+            why.crossed(step, leads, pos, look)
+                .map(|rank| why.clearing(rank, pos, true, trail))
+                .into_iter()
+                .collect()
         };
         match moment {
             Moment::Activation(step) => {
@@ -213,7 +221,8 @@ impl Why<'_> {
                 (said, vec![self.standing(Signal::Step(step), pos, self.began(step, pos), trail)])
             }
             Moment::Block(block) => {
-                let steps = self.owners.inputs(block).iter().filter(|(s, _)| look.after(pos.stage).is_active(*s));
+                let steps =
+                    self.owners.inputs(block).iter().filter(|(s, _)| look.after(pos.stage).is_active(*s));
                 let steps: Vec<StepId> = steps.map(|(s, _)| *s).take(OPERANDS).collect();
                 let name = self.names.symbols().blocks.get(block as usize).map_or("", |b| &b.name);
                 let said = match (name, steps.first()) {
@@ -221,8 +230,10 @@ impl Why<'_> {
                     ("", None) => say!("an action writes it"),
                     (name, _) => say!("the action `{name}` wrote it"),
                 };
-                let causes =
-                    steps.iter().map(|s| self.standing(Signal::Step(*s), pos, self.began(*s, pos), trail)).collect();
+                let causes = steps
+                    .iter()
+                    .map(|s| self.standing(Signal::Step(*s), pos, self.began(*s, pos), trail))
+                    .collect();
                 (said, causes)
             }
         }

@@ -58,7 +58,10 @@ fn append(table: &mut Vec<Op>, ops: &[Op]) -> Code {
 /// The same program with further code, a piece for each expression, for `engine::eval`. The expressions are those of
 /// the program's own code or parts of them, so both programs have states of one form: the code runs on a state of the
 /// first. `None` where the engine does not take so much code.
-pub fn with_parts<'e>(program: &Program, parts: impl Iterator<Item = &'e Expr>) -> Option<(Program, Vec<Code>)> {
+pub fn with_parts<'e>(
+    program: &Program,
+    parts: impl Iterator<Item = &'e Expr>,
+) -> Option<(Program, Vec<Code>)> {
     let (mut tables, mut buf) = (program.tables().clone(), Buf::default());
     let mut place = |part: &Expr| {
         buf.clear();

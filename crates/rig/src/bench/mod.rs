@@ -211,18 +211,7 @@ impl Bench {
 
     /// Asks whether one of the names was meant that come near; empty where there are none.
     pub fn near(&self, name: &str) -> Said {
-        let mut near: Vec<(usize, &str)> = self
-            .items
-            .iter()
-            .map(|i| (distance(name, &i.name), i.name.as_str()))
-            .filter(|(d, n)| *d <= (name.chars().count() + 1) / 3 || n.rsplit('.').next() == Some(name))
-            .collect();
-        near.sort_unstable();
-        near.truncate(3);
-        let mut near = near.into_iter().map(|(_, n)| say!("`{n}`"));
-        let Some(first) = near.next() else { return Said::default() };
-        let all = near.fold(first, |all, next| say!("{all} or {next}"));
-        say!("is it {all}?")
+        near(name, self.items.iter().map(|i| i.name.as_str()))
     }
 
     /// The present value of an item.
@@ -500,6 +489,21 @@ fn force(item: &Item, at: u32) -> Option<Force> {
         Role::Variable => Some(Force::Variable(Addr(item.addr + at))),
         Role::Plant => None,
     }
+}
+
+/// Asks whether one of these names was meant, those that come near to a name; empty where there are none.
+pub(crate) fn near<'n>(name: &str, all: impl Iterator<Item = &'n str>) -> Said {
+    let mut near: Vec<(usize, &str)> = all
+        .map(|n| (distance(name, n), n))
+        .filter(|(d, n)| *d <= (name.chars().count() + 1) / 3 || n.rsplit('.').next() == Some(name))
+        .collect();
+    near.sort_unstable();
+    near.dedup();
+    near.truncate(3);
+    let mut near = near.into_iter().map(|(_, n)| say!("`{n}`"));
+    let Some(first) = near.next() else { return Said::default() };
+    let all = near.fold(first, |all, next| say!("{all} or {next}"));
+    say!("is it {all}?")
 }
 
 /// The edit distance between two words.
