@@ -15,6 +15,7 @@ use g7_model::named::{Checker, declared, held};
 use g7_model::{Document, Expr, Item, Problem, ProfileName, PropertyKind, Severity, Span, Type, codes, say};
 
 use crate::symbols::Symbols;
+use crate::tree::{Expr as Tree, Piece};
 use crate::{allow, check, ir, lower, resolve};
 
 /// A document that can be run.
@@ -32,6 +33,16 @@ pub struct Compiled {
     pub query_types: Vec<Type>,
     /// The tree of each piece of the program's code.
     pub pieces: lower::Pieces,
+}
+
+impl Compiled {
+    /// The tree of code that gives a value; `None` for an empty one.
+    pub fn condition(&self, code: Code) -> Option<&Tree> {
+        match self.pieces.get(code)? {
+            Piece::Value(e) => Some(e),
+            Piece::Work(_) => None,
+        }
+    }
 }
 
 /// Compiles a document; returns no program if a problem is an error.

@@ -325,6 +325,20 @@ impl Symbols {
     }
 }
 
+/// The name of the variable of a step or macro-step, by its name in traces: `X12`, `G.X12`, `XM3`, `Fill.X`.
+pub fn activity(name: &str, of_macro: bool) -> String {
+    let (before, last) = match name.rsplit_once('.') {
+        Some((before, last)) => (format!("{before}."), last),
+        None => (String::new(), name),
+    };
+    let digits = if of_macro { last.strip_prefix('M').unwrap_or(last) } else { last };
+    if digits.starts_with(|c: char| c.is_ascii_digit()) {
+        format!("{before}X{last}")
+    } else {
+        format!("{before}{last}.X")
+    }
+}
+
 /// A STRING's words as a literal (IEC 61131-3:2003, 2.2.2).
 fn quoted(words: &[u64]) -> String {
     let len = words.first().map_or(0, |w| usize::try_from(*w).unwrap_or(usize::MAX));

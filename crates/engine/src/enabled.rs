@@ -20,24 +20,13 @@ use crate::watch;
 /// A [`Fault`] of a receptivity or a watched expression. The transitions behind it are
 /// left out.
 pub fn enabled(p: &Program, s: &State, mut tell: impl FnMut(u32, bool)) -> Result<(), Fault> {
-    // Transition sections write variables, but looking on must not change the run.
-    let mut s = s.clone();
-    s.scratch.work = 0;
-    s.scratch.stack.clear();
-    if !s.scratch.first_pass {
-        watch::update(p, &mut s, false, false)?;
-    }
-    if p.has_periods || p.has_orders {
-        block(p, &mut s);
-    }
+    let mut s = judged(p, s)?;
     let mut judge = |s: &mut State, rank: u32| -> Result<(), Fault> {
         let Some(t) = p.tables.transitions.get(rank as usize) else { return Ok(()) };
         if (t.from.0 != NONE && !s.is_active(t.from)) || !rest_active(p, s, t) {
             return Ok(());
         }
-        let blocked =
-            s.scratch.any_blocked && s.scratch.blocked.get(t.chart as usize).copied().unwrap_or(false);
-        let holds = !blocked && holds(p, s, t.receptivity)?;
+        let holds = !s.is_blocked(t.chart) && holds(p, s, t.receptivity)?;
         tell(rank, holds);
         Ok(())
     };
@@ -53,4 +42,31 @@ pub fn enabled(p: &Program, s: &State, mut tell: impl FnMut(u32, bool)) -> Resul
         }
     }
     Ok(())
+}
+
+/// A copy of a state between two passes in which edges, timers and blocked charts are as the next pass has them
+/// when it judges the transitions. The run itself is not changed: transition sections may write variables.
+///
+/// # Errors
+///
+/// A [`Fault`] of a watched expression.
+pub fn judged(p: &Program, s: &State) -> Result<State, Fault> {
+    let mut s = s.clone();
+    s.scratch.work = 0;
+    s.scratch.stack.clear();
+    if !s.scratch.first_pass {
+        watch::update(p, &mut s, false, false)?;
+    }
+    if p.has_periods || p.has_orders {
+        block(p, &mut s);
+    }
+    Ok(s)
+}
+
+impl State {
+    /// True if a chart ([`crate::Transition::chart`]) stands still in the pass that judges its transitions, since it is
+    /// not due or an order acts on it. Of [`judged`] states alone.
+    pub fn is_blocked(&self, chart: u32) -> bool {
+        self.scratch.any_blocked && self.scratch.blocked.get(chart as usize).copied().unwrap_or(false)
+    }
 }

@@ -81,7 +81,7 @@ mod watch;
 pub use canonical::ImageError;
 pub use carry::{Common, carry};
 pub use check::LoadError;
-pub use enabled::enabled;
+pub use enabled::{enabled, judged};
 pub use fault::{Fault, FaultKind};
 pub use ops::{
     Addr, Arith, Block, Builtin, Cmp, Code, GroupId, Num, Op, STACK, Service, StepId, TEXT, WORK, WatchId,

@@ -8,7 +8,7 @@ use g7_model::{Nanos, ProfileName, TargetPlc};
 use crate::station::Drive;
 use crate::values::{self, Assign};
 
-const EXIT_CODES: &str = "\
+pub(crate) const EXIT_CODES: &str = "\
 Exit codes:
   0  fine
   1  problems were found, or a test failed
@@ -107,6 +107,8 @@ pub(crate) enum Command {
     Fmt(Fmt),
     /// Run a chart with its plant, in the terminal or without one.
     Run(Run),
+    /// Ask why something happened in a run, or did not.
+    Why(crate::why::Why),
     /// Ask the devices of a chart, or one by hand, what they have.
     Devices(crate::devices::Devices),
     /// Run the plant of a chart in the place of its devices.

@@ -66,6 +66,7 @@ mod users;
 mod values;
 mod view;
 mod who;
+mod why;
 mod wiring;
 
 use std::process::ExitCode;
@@ -104,6 +105,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Devices(args) => devices::devices(args),
         Command::Plant(args) => plant::plant(args),
         Command::History(args) => history::history(args),
+        Command::Why(args) => why::why(args),
         Command::Test(args) => testing::test(args),
         Command::Grade(args) => grade::grade(args),
         Command::Prove(args) => prove::prove(args),

@@ -89,8 +89,10 @@ fn one(source: &Source, problem: &Problem) -> String {
         Severity::Error => Level::ERROR,
         Severity::Warning => Level::WARNING,
     };
+    let related = problem.related.iter().map(|(at, there)| (*at, Some(there.in_language(language()))));
+    let places: Vec<_> = std::iter::once((problem.at, None)).chain(related).collect();
     let mut elements: Vec<Element<'_>> = Vec::new();
-    excerpts(source, problem, &mut elements);
+    excerpts(source, &places, &mut elements);
     let help = problem.help.as_ref().map(|h| Level::HELP.message(h.in_language(language())));
     let group: Group<'_> = level
         .primary_title(problem.what.in_language(language()))
@@ -100,17 +102,24 @@ fn one(source: &Source, problem: &Problem) -> String {
     Renderer::styled().render(&[group])
 }
 
-/// The excerpts of the place and of the related places; places close to each other share one.
-fn excerpts<'a>(source: &'a Source, problem: &'a Problem, out: &mut Vec<Element<'a>>) {
-    let mut near: Vec<(Span, Option<String>)> = vec![(problem.at, None)];
+/// A title with excerpts of places, the first of which is the main one; coloured.
+pub(crate) fn marked(source: &Source, title: &str, places: &[(Span, Option<String>)]) -> String {
+    let mut elements: Vec<Element<'_>> = Vec::new();
+    excerpts(source, places, &mut elements);
+    Renderer::styled().render(&[Level::NOTE.primary_title(title).elements(elements)])
+}
+
+/// The excerpts of the first place and of the related ones; places close to each other share one.
+fn excerpts<'a>(source: &'a Source, places: &[(Span, Option<String>)], out: &mut Vec<Element<'a>>) {
+    let Some((first, related)) = places.split_first() else { return };
+    let mut near: Vec<(Span, Option<String>)> = vec![first.clone()];
     let mut far = Vec::new();
     let line = |span: Span| source.home(span).line(source.home(span).range(span).start);
-    for (span, there) in &problem.related {
-        let place = (*span, Some(there.in_language(language())));
-        if span.file == problem.at.file && line(*span).abs_diff(line(problem.at)) < EXCERPT / 2 {
-            near.push(place)
+    for place in related {
+        if place.0.file == first.0.file && line(place.0).abs_diff(line(first.0)) < EXCERPT / 2 {
+            near.push(place.clone())
         } else {
-            far.push(vec![place])
+            far.push(vec![place.clone()])
         }
     }
     for places in std::iter::once(near).chain(far) {
@@ -182,7 +191,8 @@ pub(crate) fn json(source: &Source, problem: &Problem) -> Value {
     out
 }
 
-fn place(source: &Source, span: Span) -> Value {
+/// A place as JSON.
+pub(crate) fn place(source: &Source, span: Span) -> Value {
     let source = source.home(span);
     let range = source.range(span);
     let point = |byte: usize| {

@@ -36,8 +36,10 @@ impl Chunks {
         self.last.push(word);
     }
 
-    pub(crate) fn iter(&self) -> impl Iterator<Item = u64> + '_ {
-        self.full.iter().chain([&self.last]).flatten().copied()
+    /// The word at a place, counted from 0.
+    pub(crate) fn get(&self, at: usize) -> Option<u64> {
+        let chunk = if at / CHUNK == self.full.len() { &self.last } else { self.full.get(at / CHUNK)? };
+        chunk.get(at % CHUNK).copied()
     }
 }
 
@@ -48,12 +50,16 @@ mod tests {
     #[test]
     fn words_come_back_in_their_order_over_the_ends_of_chunks() {
         let mut list = Chunks::new();
+        (0..CHUNK as u64).for_each(|word| list.push(word));
+        assert_eq!((list.get(CHUNK - 1), list.get(CHUNK)), (Some(CHUNK as u64 - 1), None));
+        let mut list = Chunks::new();
         let count = 3 * CHUNK as u64 + 5;
         (0..count).for_each(|word| list.push(word));
-        assert!(list.iter().eq(0..count));
         assert_eq!(list.full.len(), 3);
+        assert!((0..count).all(|at| list.get(at as usize) == Some(at)));
+        assert_eq!(list.get(count as usize), None);
         let mut copy = list.clone();
         copy.push(count);
-        assert!(copy.iter().eq(0..=count) && list.iter().eq(0..count));
+        assert_eq!((copy.get(count as usize), list.get(count as usize)), (Some(count), None));
     }
 }

@@ -45,6 +45,6 @@ pub use record::vcd::write_vcd;
 pub use record::{Kind, Recording, Sample, Signal, Value};
 pub use retain::{Layout, RetainError, Retained};
 pub use runner::{Coupling, Force, Halt, Runner, Start};
-pub use tape::{Divergence, Tape, TapeError};
+pub use tape::{Divergence, Player, Tape, TapeError};
 pub use text::{read_text, write_text};
 pub use whole::{write_private, write_whole};

@@ -72,13 +72,92 @@ pub struct Divergence {
     pub now: Nanos,
 }
 
+/// A place on a tape, with the state of the charts there. It goes ahead scan by scan; a copy goes on from
+/// its place once more.
+#[derive(Clone, Debug)]
+pub struct Player {
+    /// The place of the next event among the words of the tape.
+    at: usize,
+    inputs: Vec<u64>,
+    state: State,
+    scans: usize,
+}
+
+impl Player {
+    /// The place before all events of a tape.
+    pub fn new(program: &Program) -> Player {
+        let rows = program.tables().inputs;
+        let inputs = vec![0; (rows.end - rows.start) as usize];
+        Player { at: 0, inputs, state: State::new(program), scans: 0 }
+    }
+
+    /// Carries out what was written from outside before the next scan, and takes the inputs of that scan.
+    /// Returns its instant, or `None` where no scan follows. A second call for the same scan changes nothing.
+    pub fn prepare(&mut self, tape: &Tape, program: &Program) -> Option<Nanos> {
+        loop {
+            let mut next = self.at;
+            match tape.event(&mut next)? {
+                Event::Write(addr, value) => self.state.set_word(program, Addr(addr), value),
+                Event::Restart => self.state = State::new(program),
+                Event::Scan { now, changed, .. } => {
+                    for (i, value) in changed {
+                        if let Some(word) = self.inputs.get_mut(i as usize) {
+                            *word = value;
+                        }
+                    }
+                    return Some(now);
+                }
+            }
+            self.at = next;
+        }
+    }
+
+    /// Makes the next scan; does nothing where none follows.
+    ///
+    /// # Errors
+    ///
+    /// The state behind it is another one than the recorded one.
+    pub fn scan(&mut self, tape: &Tape, program: &Program) -> Result<(), Divergence> {
+        let Some(now) = self.prepare(tape, program) else { return Ok(()) };
+        // A fault is recorded in the state, so the comparison covers it.
+        scan(program, &mut self.state, &self.inputs, now.count()).ok();
+        let number = self.scans;
+        self.scans += 1;
+        match tape.event(&mut self.at) {
+            Some(Event::Scan { digest, .. }) if digest == digest_of(&self.state) => Ok(()),
+            _ => Err(Divergence { scan: number, now }),
+        }
+    }
+
+    /// The state of the charts at this place.
+    pub fn state(&self) -> &State {
+        &self.state
+    }
+
+    /// The inputs of the scan that was prepared or made last.
+    pub fn inputs(&self) -> &[u64] {
+        &self.inputs
+    }
+
+    /// The number of scans before this place.
+    pub fn scans(&self) -> usize {
+        self.scans
+    }
+
+    /// The instant of the latest scan.
+    pub fn now(&self) -> Nanos {
+        Nanos::new(self.state.now())
+    }
+}
+
 const HEAD: &str = "g7 tape 3";
-/// The beginning of a record in every version.
-const ANY_HEAD: &str = "g7 tape ";
 /// The last line of a record, before the number of its scans.
 const END: &str = "end ";
 
 impl Tape {
+    /// The beginning of a record as text, in every version.
+    pub const SIGN: &str = "g7 tape ";
+
     /// An empty tape, for a program before its first scan.
     pub fn new(program: &Program) -> Tape {
         let rows = program.tables().inputs;
@@ -131,18 +210,26 @@ impl Tape {
     }
 
     fn events(&self) -> impl Iterator<Item = Event> + '_ {
-        let mut words = self.words.iter();
-        std::iter::from_fn(move || {
-            let first = words.next()?;
-            Some(match first & ((1 << KIND) - 1) {
-                SCAN => {
-                    let (now, digest) = (Nanos::new(words.next()? as i64), words.next()?);
-                    let change = |_| Some((words.next()? as u32, words.next()?));
-                    Event::Scan { now, changed: (0..first >> KIND).map_while(change).collect(), digest }
-                }
-                WRITE => Event::Write((first >> KIND) as u32, words.next()?),
-                _ => Event::Restart,
-            })
+        let mut at = 0;
+        std::iter::from_fn(move || self.event(&mut at))
+    }
+
+    /// The event at a word; the place is then that of the next one.
+    fn event(&self, at: &mut usize) -> Option<Event> {
+        let mut next = || {
+            let word = self.words.get(*at)?;
+            *at += 1;
+            Some(word)
+        };
+        let first = next()?;
+        Some(match first & ((1 << KIND) - 1) {
+            SCAN => {
+                let (now, digest) = (Nanos::new(next()? as i64), next()?);
+                let change = |_| Some((next()? as u32, next()?));
+                Event::Scan { now, changed: (0..first >> KIND).map_while(change).collect(), digest }
+            }
+            WRITE => Event::Write((first >> KIND) as u32, next()?),
+            _ => Event::Restart,
         })
     }
 
@@ -171,31 +258,13 @@ impl Tape {
         program: &Program,
         mut seen: impl FnMut(Nanos, &State),
     ) -> Result<State, Divergence> {
-        let mut state = State::new(program);
-        let rows = program.tables().inputs;
-        let mut inputs = vec![0; (rows.end - rows.start) as usize];
-        let mut number = 0;
-        for event in self.events() {
-            match event {
-                Event::Write(addr, value) => state.set_word(program, Addr(addr), value),
-                Event::Restart => state = State::new(program),
-                Event::Scan { now, changed, digest: expected } => {
-                    for (i, value) in changed {
-                        if let Some(word) = inputs.get_mut(i as usize) {
-                            *word = value;
-                        }
-                    }
-                    // A fault is recorded in the state, so the comparison covers it.
-                    scan(program, &mut state, &inputs, now.count()).ok();
-                    if digest_of(&state) != expected {
-                        return Err(Divergence { scan: number, now });
-                    }
-                    seen(now, &state);
-                    number += 1;
-                }
-            }
+        let mut player = Player::new(program);
+        while player.prepare(self, program).is_some() {
+            player.scan(self, program)?;
+            seen(player.now(), player.state());
         }
-        Ok(state)
+        // What was written behind the last scan is in the state already.
+        Ok(player.state)
     }
 
     /// The tape as text, one event per line.
@@ -231,7 +300,7 @@ impl Tape {
     pub fn from_text(text: &str) -> Result<Tape, TapeError> {
         let mut lines = (1..).zip(text.lines());
         let first = lines.next().map_or("", |(_, line)| line);
-        if !first.starts_with(ANY_HEAD) {
+        if !first.starts_with(Tape::SIGN) {
             return Err(TapeError::Other);
         }
         let head = first.strip_prefix(HEAD).ok_or(TapeError::Version)?;

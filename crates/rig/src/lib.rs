@@ -13,6 +13,7 @@
 //! needed.
 #![forbid(unsafe_code)]
 
+mod asked;
 mod bench;
 mod carry;
 mod error;
@@ -22,6 +23,7 @@ mod source;
 pub mod testing;
 pub mod values;
 
+pub use asked::question;
 pub use bench::build::build;
 pub use bench::{Activity, Answer, Ask, Bench, Conflicts, Item, Options, PlantSide, Role, StepItem, Table};
 pub use carry::{Carried, carry};

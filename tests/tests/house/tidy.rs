@@ -47,6 +47,7 @@ const ALLOWED: &[Arrows] = &[
     // It knows nothing of charts; foreign functions are called here alone.
     ("fmi", &[], Some(&["flate2", "libc", "libloading", "roxmltree", "zip"])),
     ("host", &["g7-model", "g7-engine"], None),
+    ("why", &["g7-model", "g7-engine", "g7-compile", "g7-host"], Some(&[])),
     ("online", &["g7-model", "g7-engine", "g7-host", "g7-rig"], None),
     ("opcua", &["g7-model", "g7-host", "g7-store", "g7-online"], None),
     ("store", &["g7-model", "g7-host"], None),
@@ -54,7 +55,16 @@ const ALLOWED: &[Arrows] = &[
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde", "ts-rs"])),
     (
         "rig",
-        &["g7-library", "g7-model", "g7-syntax", "g7-exchange", "g7-engine", "g7-compile", "g7-host"],
+        &[
+            "g7-library",
+            "g7-model",
+            "g7-syntax",
+            "g7-exchange",
+            "g7-engine",
+            "g7-compile",
+            "g7-host",
+            "g7-why",
+        ],
         Some(&["thiserror"]),
     ),
     (
@@ -86,6 +96,7 @@ const ALLOWED: &[Arrows] = &[
         "g7",
         &[
             "g7-verify",
+            "g7-why",
             "g7-hosts",
             "g7-fmi",
             "g7-model",

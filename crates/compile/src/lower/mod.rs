@@ -48,6 +48,7 @@ use watched::Watches;
 use words::Words;
 use work::{Lower, Refusal};
 
+pub use pieces::with_parts;
 pub use words::{num, words_for, words_of};
 
 /// The tables of a unit and what their rows are called.

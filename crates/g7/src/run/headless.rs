@@ -16,6 +16,7 @@ use crate::failure::{Failure, Verdict, raw};
 use crate::message::{note, talk, tell, told, wrote};
 use crate::progress::Progress;
 use crate::sources::Source;
+use crate::values::Assign;
 use crate::{files, style};
 use g7_model::{Nanos, Said, say};
 use g7_rig::{Bench, Conflicts, Item, Role};
@@ -47,7 +48,7 @@ fn form(path: &Path) -> Result<Form, Failure> {
 
 pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict, Failure> {
     let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
-    let script = script(bench, args)?;
+    let script = script(bench, &args.set)?;
     let shown = shown(bench, args)?;
     let outside = args.plant.as_deref().filter(|p| outside::is_fmu(Some(p)));
     let mut outside = outside.map(|path| Outside::open(Path::new(path), bench, &args.wire)).transpose()?;
@@ -96,10 +97,13 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     Ok(verdict)
 }
 
+/// What is set when.
+type Script<'b> = Vec<(Nanos, &'b Item, Value)>;
+
 /// The assignments of `--set`, ordered by time, then by their order in the arguments.
-fn script<'b>(bench: &'b Bench, args: &Run) -> Result<Vec<(Nanos, &'b Item, Value)>, Failure> {
+fn script<'b>(bench: &'b Bench, set: &[Assign]) -> Result<Script<'b>, Failure> {
     let mut script = Vec::new();
-    for assign in &args.set {
+    for assign in set {
         let Some(item) = bench.item(&assign.name) else {
             return Err(Failure::Usage(say!("--set: {}", bench.unknown(&assign.name))));
         };
@@ -260,6 +264,36 @@ fn columns(recording: &Recording, lanes: &[usize]) -> usize {
     width.saturating_sub(label + 20).max(20)
 }
 
+/// The tape of a run in virtual time up to an instant, or up to a fault.
+pub(crate) fn taped(
+    bench: &Bench,
+    set: &[Assign],
+    seed: u64,
+    length: Option<Nanos>,
+) -> Result<Tape, Failure> {
+    let script = script(bench, set)?;
+    let mut runner = bench.runner(seed).with_tape();
+    let mut recording = Recording::new(bench.signals()).with_limit(1);
+    let until = (length.unwrap_or(UNSAID), &Ended::new()?);
+    let sides = (&mut runner, &mut None);
+    play(bench, sides, &mut recording, &script, until, &mut VirtualClock::default(), &mut None)?;
+    Ok(runner.tape().cloned().unwrap_or_default())
+}
+
+/// Reads a record of `--record`, which is one of this chart.
+pub(crate) fn tape_of(bench: &Bench, path: &Path) -> Result<Tape, Failure> {
+    let text = String::from_utf8(files::read(path)?).unwrap_or_default();
+    let tape = Tape::from_text(&text)
+        .map_err(|e| Failure::Usage(say!("{} {e}", raw(path.display()), e = raw(e))))?;
+    if tape.of() != inputs(bench) {
+        return Err(Failure::Usage(say!(
+            "{} is a record of another chart: its inputs have other names or types",
+            raw(path.display())
+        )));
+    }
+    Ok(tape)
+}
+
 /// A hash that tells the record of one chart from that of another: the names and types of the inputs. All else may
 /// change, so that a replay shows what a change of the chart does.
 fn inputs(bench: &Bench) -> u64 {
@@ -272,15 +306,7 @@ fn inputs(bench: &Bench) -> u64 {
 
 /// Replays a record and compares every state.
 pub(super) fn replay(bench: &Bench, args: &Run, path: &Path) -> Result<Verdict, Failure> {
-    let text = String::from_utf8(files::read(path)?).unwrap_or_default();
-    let tape = Tape::from_text(&text)
-        .map_err(|e| Failure::Usage(say!("{} {e}", raw(path.display()), e = raw(e))))?;
-    if tape.of() != inputs(bench) {
-        return Err(Failure::Usage(say!(
-            "{} is a record of another chart: its inputs have other names or types",
-            raw(path.display())
-        )));
-    }
+    let tape = tape_of(bench, path)?;
     let trace = args.trace.as_deref().map(|path| form(path).map(|form| (path, form))).transpose()?;
     let mut recording = Recording::new(bench.signals());
     let played = tape.replay(&bench.compiled.program, |now, state| {

@@ -7,7 +7,9 @@ mod outside;
 use std::io::{IsTerminal, stdin, stdout};
 use std::path::Path;
 
+pub(crate) use headless::{tape_of, taped};
 pub(crate) use keep::Keeper;
+pub(crate) use outside::is_fmu;
 
 use g7_model::say;
 

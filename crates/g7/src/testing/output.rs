@@ -3,6 +3,7 @@
 use std::io::{self, Write};
 
 use g7_model::{Nanos, say};
+use g7_why::Cause;
 use serde_json::{Value, json};
 
 use crate::failure::raw;
@@ -42,12 +43,28 @@ pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<
             writeln!(out, "  {}", told(&say!("got {}", raw(got.join(", ")))))?;
         }
         writeln!(out, "  {}", told(&say!("situation {}", raw(&d.situation))))?;
+        reasons(out, &d.why)?;
         if !d.chronogram.is_empty() {
             writeln!(out)?;
             for line in d.chronogram.lines() {
                 writeln!(out, "  {line}")?;
             }
         }
+    }
+    Ok(())
+}
+
+/// Most lines of the reasons of a failure.
+const REASONS: usize = 6;
+
+/// Prints the first causes of the values in a condition that failed.
+fn reasons(out: &mut dyn Write, why: &[Cause]) -> io::Result<()> {
+    let lines: Vec<(usize, &Cause)> = why.iter().flat_map(Cause::lines).filter(|(_, c)| !c.aside).collect();
+    for (depth, line) in lines.iter().take(REASONS) {
+        writeln!(out, "  {}{}{}", "  ".repeat(*depth), if *depth > 0 { "← " } else { "" }, told(&line.said))?;
+    }
+    if lines.len() > REASONS {
+        writeln!(out, "  {}", told(&say!("… and {} more causes", lines.len() - REASONS)))?;
     }
     Ok(())
 }
@@ -140,6 +157,15 @@ pub(crate) fn defect_json(d: &Defect, what: &str) -> Value {
     json!({
         "what": what, "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
         "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
+        "why": d.why.iter().map(cause_json).collect::<Vec<_>>(),
+    })
+}
+
+/// A sentence with its causes, without places.
+pub(crate) fn cause_json(cause: &Cause) -> Value {
+    json!({
+        "what": told(&cause.said), "kind": cause.fact.word(), "time_seconds": cause.now.as_seconds(),
+        "aside": cause.aside, "causes": cause.causes.iter().map(cause_json).collect::<Vec<_>>(),
     })
 }
 

@@ -33,3 +33,4 @@ mod service;
 mod suite;
 mod testing;
 mod tongues;
+mod why;

@@ -20,6 +20,7 @@ const TABLES: &[&str] = &[
     include_str!("titles.txt"),
     include_str!("check.txt"),
     include_str!("tests.txt"),
+    include_str!("why.txt"),
     include_str!("iec.txt"),
     include_str!("exchange.txt"),
     include_str!("online.txt"),

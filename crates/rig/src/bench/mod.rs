@@ -11,6 +11,7 @@ use std::sync::Arc;
 use g7_compile::Held;
 use g7_compile::plant;
 use g7_compile::resolve::kept_by_system;
+use g7_compile::symbols::activity;
 use g7_engine::{Addr, FaultKind, GroupId, State, StepId};
 use g7_host::{Coupling, Force, Halt, Kind, Recording, Runner, Sample, Signal, Value, read_text, write_text};
 use g7_model::{Nanos, Said, Span, Type, say};
@@ -78,19 +79,7 @@ pub struct StepItem {
 impl StepItem {
     /// The name of its step variable in the language: `X12`, `G.X12`, `XM3`, `Fill.X`.
     pub fn activity(&self) -> String {
-        let (before, last) = match self.name.rsplit_once('.') {
-            Some((before, last)) => (format!("{before}."), last),
-            None => (String::new(), self.name.as_str()),
-        };
-        let digits = match self.id {
-            Activity::Step(_) => last,
-            Activity::Macro(_) => last.strip_prefix('M').unwrap_or(last),
-        };
-        if digits.starts_with(|c: char| c.is_ascii_digit()) {
-            format!("{before}X{last}")
-        } else {
-            format!("{before}{last}.X")
-        }
+        activity(&self.name, matches!(self.id, Activity::Macro(_)))
     }
 }
 
@@ -222,18 +211,7 @@ impl Bench {
 
     /// Asks whether one of the names was meant that come near; empty where there are none.
     pub fn near(&self, name: &str) -> Said {
-        let mut near: Vec<(usize, &str)> = self
-            .items
-            .iter()
-            .map(|i| (distance(name, &i.name), i.name.as_str()))
-            .filter(|(d, n)| *d <= (name.chars().count() + 1) / 3 || n.rsplit('.').next() == Some(name))
-            .collect();
-        near.sort_unstable();
-        near.truncate(3);
-        let mut near = near.into_iter().map(|(_, n)| say!("`{n}`"));
-        let Some(first) = near.next() else { return Said::default() };
-        let all = near.fold(first, |all, next| say!("{all} or {next}"));
-        say!("is it {all}?")
+        near(name, self.items.iter().map(|i| i.name.as_str()))
     }
 
     /// The present value of an item.
@@ -511,6 +489,21 @@ fn force(item: &Item, at: u32) -> Option<Force> {
         Role::Variable => Some(Force::Variable(Addr(item.addr + at))),
         Role::Plant => None,
     }
+}
+
+/// Asks whether one of these names was meant, those that come near to a name; empty where there are none.
+pub(crate) fn near<'n>(name: &str, all: impl Iterator<Item = &'n str>) -> Said {
+    let mut near: Vec<(usize, &str)> = all
+        .map(|n| (distance(name, n), n))
+        .filter(|(d, n)| *d <= (name.chars().count() + 1) / 3 || n.rsplit('.').next() == Some(name))
+        .collect();
+    near.sort_unstable();
+    near.dedup();
+    near.truncate(3);
+    let mut near = near.into_iter().map(|(_, n)| say!("`{n}`"));
+    let Some(first) = near.next() else { return Said::default() };
+    let all = near.fold(first, |all, next| say!("{all} or {next}"));
+    say!("is it {all}?")
 }
 
 /// The edit distance between two words.

@@ -5,9 +5,11 @@ use std::collections::BTreeSet;
 use g7_engine::eval;
 use g7_host::{Chronogram, Clock, Halt, Kind, Recording, Runner, Start, Style, Value, read_text};
 use g7_model::{Nanos, Said, Span, Type, say};
+use g7_why::Cause;
 
 use super::coverage::Coverage;
 use super::statements::{Check, Does, Line, Plan};
+use super::why;
 use crate::Source;
 use crate::{Answer, Bench, Conflicts, Item, Role, fault};
 
@@ -32,6 +34,8 @@ pub struct Defect {
     pub chronogram: String,
     /// The place in charts or plant at which a fault occurred.
     pub origin: Option<String>,
+    /// Why the names in the condition have their values.
+    pub why: Vec<Cause>,
     /// True if the test was ended because it took too much real time.
     pub overdue: bool,
     /// The input words that each scan read, from the first scan to the failure. Empty if inputs alone do not lead
@@ -110,7 +114,7 @@ pub(super) fn run<'b>(
 ) -> Done {
     let mut exec = Exec {
         bench,
-        runner: bench.runner(seed),
+        runner: if record { bench.runner(seed).with_tape() } else { bench.runner(seed) },
         recording: record.then(|| Recording::new(bench.signals()).with_limit(4_000)),
         inputs: record.then(Vec::new),
         always: Vec::new(),
@@ -404,6 +408,7 @@ impl<'b> Exec<'b, '_, '_> {
             time: self.now(),
             situation: self.situation(),
             chronogram: self.chronogram(&names),
+            why: why::causes(self.bench, &self.runner, &names),
             expected_at: check.map(|c| c.at),
             got,
             ..Defect::default()

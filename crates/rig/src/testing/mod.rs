@@ -12,6 +12,7 @@ mod properties;
 pub mod script;
 mod sides;
 mod statements;
+mod why;
 
 use std::collections::BTreeSet;
 
