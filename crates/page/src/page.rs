@@ -21,7 +21,7 @@ use crate::places::{Change, inward};
 use crate::prove::{self, Proof};
 use crate::redrawn::{Redrawn, Shown};
 use crate::request::{Answers, Request};
-use crate::run::{self, Frame, Lanes, Run, Started, Swapped};
+use crate::run::{self, Asked, Because, Frame, Lanes, Run, Started, Swapped};
 use crate::{drawing, testing};
 
 /// A page: its open files and its runs.
@@ -516,6 +516,17 @@ impl Answers for Page {
         most: usize,
     ) -> Result<Lanes, Said> {
         Ok(self.run(&run)?.lanes(&signals, from_ms, to_ms, most))
+    }
+
+    fn run_tape(&mut self, run: String) -> Result<Text, Said> {
+        Ok(Text { text: self.run(&run)?.record()? })
+    }
+
+    fn why(&mut self, asked: Asked) -> Result<Because, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
+        run::why(asked, self.language)
     }
 
     fn run_export(

@@ -15,7 +15,7 @@ use crate::overview::Overview;
 use crate::places::Change;
 use crate::prove::{Both, Compared, Limits, Report as Proved, Ways, Wish as Refuted};
 use crate::redrawn::Redrawn;
-use crate::run::{Form as SignalsForm, Frame, Lanes, Start, Started, Swapped};
+use crate::run::{Asked, Because, Form as SignalsForm, Frame, Lanes, Start, Started, Swapped};
 use crate::testing::Report as Tested;
 
 /// Makes of each row `fn name(fields) -> Answer;` a request with these fields and a method of [`Answers`]. A
@@ -277,6 +277,12 @@ requests! {
         #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         most: usize,
     ) -> Lanes;
+
+    /// The record of a run, from its start: all that entered the charts. It is for `why`.
+    fn run_tape(run: String) -> Text;
+
+    /// Why something happened in a run, of which this is the record.
+    fn why(#[serde(flatten)] asked: Asked) -> Because;
 
     /// The signals as a file; all of them if none is named.
     fn run_export(

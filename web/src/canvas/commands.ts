@@ -4,6 +4,7 @@ import type { IconName } from '../lib/Icon.svelte';
 import { t, type Key } from '../lib/i18n';
 import { runs } from '../lib/runs.svelte';
 import { shell } from '../lib/shell.svelte';
+import { why } from '../run/why.svelte';
 import { editor } from './editor.svelte';
 
 export interface Command {
@@ -130,6 +131,14 @@ export const commands: Command[] = [
     icon: 'undo',
     when: () => editor.one?.part === 'link' && editor.one.bent !== undefined,
     run: () => editor.straighten(),
+  },
+  {
+    id: 'why',
+    title: 'why.symbol',
+    keys: ['W'],
+    icon: 'help',
+    when: () => (step() || transition()) && runs.current !== null,
+    run: () => runs.current && why.ask(runs.current, id()),
   },
   {
     id: 'nextLink',

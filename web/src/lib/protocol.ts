@@ -60,6 +60,9 @@ export type Alike = {
   bent?: boolean;
 };
 
+/** An answer: its sentences in the order in which they are read, causes behind their effects. */
+export type Because = { lines: Array<WhyLine> };
+
 /** The text before the last change; null if there was none. */
 export type Before = { text: string | null };
 
@@ -1057,6 +1060,20 @@ export type Verdict = 'proved' | 'refuted' | 'open';
 
 export type View = { file: string; bindings: Array<Binding> };
 
+/** A sentence of an answer. */
+export type WhyLine = {
+  /** How many effects stand above it, one above the other. */
+  depth: number;
+  said: string;
+  /** A word for the kind of the sentence: `input`, `step`, `transition`, `time` and so on. */
+  fact: string;
+  at_ms: number;
+  /** It holds as well, but did not begin the change. */
+  aside: boolean;
+  /** The symbols of which it speaks. */
+  items: Array<string>;
+};
+
 /** The contents of each message, beside its name in `do`. */
 export interface Requests {
   /** Opens a text under a name; a file that is imported gets another name. `uses` are texts of files that it uses, by
@@ -1200,6 +1217,30 @@ export interface Requests {
   /** Asks again for the description of a run that its start returned. */
   run_signals: { run: string };
   run_lanes: { run: string; signals: Array<number>; from_ms: number; to_ms: number; most?: number };
+  /** The record of a run, from its start: all that entered the charts. It is for `why`. */
+  run_tape: { run: string };
+  /** Why something happened in a run, of which this is the record. */
+  why: {
+    /** The text that runs, and those that it uses. */
+    text: string;
+    uses?: Array<Shelved> | null;
+    /** The answer of `run_tape`. */
+    tape: string;
+    /** The id of a symbol, or a name; without one it is asked what happened in the scan. */
+    about?: string | null;
+    /** The instance of the symbol, if its chart has parameters. */
+    instance?: string | null;
+    /** The instant of the scan; without one, that of the last. */
+    ms?: number | null;
+    file: string;
+    run: string;
+    profile?: string | null;
+    scan_ms?: number | null;
+    plant?: string | null;
+    seed?: number;
+    /** A run to be repeated from the start, without the user. */
+    moves?: Array<ProofScan> | null;
+  };
   /** The signals as a file; all of them if none is named. */
   run_export: {
     run: string;
@@ -1266,5 +1307,7 @@ export interface Answers {
   run_frame: Frame;
   run_signals: Started;
   run_lanes: Lanes;
+  run_tape: Text;
+  why: Because;
   run_export: Text;
 }

@@ -4,6 +4,7 @@
 //! wish -> start -> Run (rig::Bench, host::Runner, Recording) -> frame: what changed
 //!         repeat: the scans of a proof
 //!                   \-> past: back in time    lanes: chronogram    swap: on-line change
+//!                         \-> tape -> why: why something happened in it
 //! ```
 //!
 //! Time advances only by messages; a frame contains only what differs from the previous frame;
@@ -20,6 +21,7 @@ mod sent;
 mod start;
 mod swap;
 mod times;
+mod why;
 mod wish;
 
 pub(crate) use frame::Frame;
@@ -31,4 +33,5 @@ pub(crate) use scans::Scan;
 pub use sent::Show;
 pub(crate) use start::{Started, start};
 pub(crate) use swap::Swapped;
+pub(crate) use why::{Asked, Because, why};
 pub(crate) use wish::{Start, profile};

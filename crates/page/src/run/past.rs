@@ -4,7 +4,7 @@
 //! Repeating a scan gives the same state (the engine guarantees it); the memory is bounded for runs
 //! of any length.
 
-use g7_host::{Runner, Start, Value};
+use g7_host::{Runner, Start, Tape, Value};
 use g7_model::Nanos;
 use g7_rig::Bench;
 
@@ -108,9 +108,13 @@ impl Past {
         let number = (instant - self.begin).count_of(period).saturating_add(1);
         let target = u64::try_from(number).unwrap_or(0).clamp(1, self.scans.max(1));
         let mark = self.marks.iter().rev().find(|m| m.scans < target)?;
-        let mut runner = mark.runner.clone();
-        let mut next = self.entries.partition_point(|e| e.scans < mark.scans);
-        for scan in mark.scans..target {
+        Some((self.repeated(bench, mark.runner.clone(), mark.scans, target), target))
+    }
+
+    /// A run that stands before the scan with the number `from`, after all scans up to `target`.
+    fn repeated(&self, bench: &Bench, mut runner: Runner, from: u64, target: u64) -> Runner {
+        let mut next = self.entries.partition_point(|e| e.scans < from);
+        for scan in from..target {
             while let Some(entry) = self.entries.get(next).filter(|e| e.scans <= scan) {
                 if entry.within && !runner.is_within_scan() {
                     runner.pass().ok();
@@ -120,7 +124,15 @@ impl Past {
             }
             runner.scan().ok();
         }
-        Some((runner, target))
+        runner
+    }
+
+    /// All that entered the charts from the start on; `None` where the past begins later, after an on-line change for
+    /// example.
+    pub(super) fn tape(&self, bench: &Bench) -> Option<Tape> {
+        let first = self.marks.first().filter(|m| m.scans == 0 && self.begin == Nanos::ZERO)?;
+        let runner = self.repeated(bench, first.runner.clone().with_tape(), 0, self.scans);
+        runner.tape().cloned()
     }
 
     /// True if this is the latest scan.
