@@ -89,6 +89,7 @@ const ALLOWED: &[Arrows] = &[
             "g7-rig",
             "g7-verify",
             "g7-grade",
+            "g7-why",
         ],
         Some(&["diffy", "serde", "serde_json", "ts-rs"]),
     ),

@@ -1,9 +1,9 @@
 // One table of words: key -> [English, French, Portuguese].
 import { access } from './words/access';
 import { canvas } from './words/canvas';
-import { exercise } from './words/exercise';
 import { out } from './words/export';
 import { course } from './words/course';
+import { exercise } from './words/exercise';
 import { gone } from './words/gone';
 import { names } from './words/names';
 import { operator } from './words/operator';
@@ -21,3 +21,20 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
+const table = { ...access, ...shell, ...canvas, ...course, ...exercise, ...out, ...gone, ...names, ...operator, ...panels, ...prove, ...run, ...share, ...start, ...text, ...why, ...wiring, ...work } as const;
+
+export type Key = keyof typeof table;
+export type Language = 'en' | 'fr' | 'pt';
+
+export const languages: Record<Language, string> = { en: 'English', fr: 'Français', pt: 'Português' };
+
+/** The sentence in the language of the page. */
+export function said(row: readonly [en: string, fr: string, pt: string]): string {
+  const at = { en: 0, fr: 1, pt: 2 } as const;
+  return row[at[prefs.language]];
+}
+
+/** The word in the language of the page; `{name}` is replaced by a value. */
+export function t(key: Key, values: Record<string, string | number> = {}): string {
+  return said(table[key]).replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+}
