@@ -193,6 +193,22 @@ test('an exercise with mistakes is told to its teacher, and the others open', as
   await done(page);
 });
 
+test('a check shows that it works, is cancelled, and can be asked for again', async () => {
+  const page = await opened();
+  let release = (): void => undefined;
+  const held = new Promise<void>((done) => (release = done));
+  // The check cannot end before its module has come.
+  await page.route('**/g7-whole.wasm', (route) => held.then(() => route.continue()).catch(() => undefined));
+  await button(page, 'Check my solution').click();
+  await panel(page).getByRole('progressbar', { name: 'Check my solution' }).waitFor();
+  await button(page, 'Cancel').click();
+  await button(page, 'Check my solution').waitFor();
+  assert.equal(await panel(page).locator('.result').count(), 0);
+  release();
+  await check(page, /Not yet\./);
+  await done(page);
+});
+
 test('a damaged hidden part is a sentence, and the page goes on', async () => {
   const page = await openWith(b, site, FILE, { view: 'both' });
   const all = readFileSync(join(DIST, 'exercises.json'), 'utf8').replace(/"sealed":"../g, '"sealed":"zz');
