@@ -1,4 +1,4 @@
-//! What holds for every answer: a cause is true at its time and not later than its effect, and what is followed ends
+//! The laws of answers: a cause is true at its time and not later than its effect, and what is followed ends
 //! at an input, a time, the start or what came from outside.
 
 use g7_compile::{Compiled, compile};
@@ -13,7 +13,7 @@ const CHARTS: u64 = 40;
 /// Number of scans of each chart.
 const SCANS: usize = 40;
 
-/// What a scan left.
+/// The state behind a scan.
 struct Left {
     now: Nanos,
     /// The variables behind its beginning, in which PRE runs, and behind its passes: later parts may write them again.
@@ -146,7 +146,7 @@ fn check(c: &Compiled, run: &Run, cause: &Cause, ends: &mut Ends) -> Result<(), 
             Ok(())
         }
         Fact::Part(false) => Ok(()),
-        // What was told before is an aside; so nothing lies behind it but asides.
+        // A sentence that was told before is an aside; so nothing lies behind it but asides.
         Fact::Cleared(_) | Fact::Part(true) | Fact::Step(..) | Fact::Group(..) | Fact::Word(..)
             if !cause.causes.is_empty() =>
         {
