@@ -263,7 +263,7 @@ impl Tape {
             player.scan(self, program)?;
             seen(player.now(), player.state());
         }
-        // What was written behind the last scan is in the state already.
+        // The writes behind the last scan are in the state already.
         Ok(player.state)
     }
 

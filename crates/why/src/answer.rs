@@ -15,7 +15,7 @@ pub struct Cause {
     pub fact: Fact,
     /// The instant of which it is true.
     pub now: Nanos,
-    /// What it speaks of in the text, the first place first.
+    /// The places in the text that it speaks of, the main one first.
     pub places: Vec<Span>,
     /// It holds as well, but did not begin the change: its own causes are not followed.
     pub aside: bool,
@@ -23,7 +23,7 @@ pub struct Cause {
     pub causes: Vec<Cause>,
 }
 
-/// What a sentence says.
+/// The content of a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fact {
     /// A word of an input has this value from this scan on: here a chain ends.

@@ -36,8 +36,9 @@ struct Input {
 }
 
 impl Input {
+    /// It began to act. A step that came and went within the scan gives its pulse alone.
     fn came(&self) -> bool {
-        self.is && !self.was || self.turned_on
+        self.is && !self.was || self.turned_on && (self.is || self.qualifier == Qualifier::P1)
     }
 
     fn went(&self) -> bool {

@@ -177,7 +177,7 @@ impl Why<'_> {
         vec![Cause::new(said, Fact::Time, self.time(pos), [place]).because(standing)]
     }
 
-    /// What activated or deactivated a step.
+    /// The clearing, order, enclosure or service that activated or deactivated a step.
     fn mover(&self, step: StepId, pos: Pos, look: &Look, trail: &mut Trail) -> Cause {
         let p = self.past.program;
         let t = p.tables();
@@ -335,7 +335,7 @@ impl Why<'_> {
         first.into_iter().chain(more.iter().copied()).collect()
     }
 
-    /// Where the declaration of a code's first word is of no help, the place of an action (rank).
+    /// The place of an action (rank), if a line of the text stands for it.
     pub(crate) fn action_place(&self, action: u32) -> Span {
         self.names
             .symbols()

@@ -49,10 +49,10 @@ use parts::Parts;
 use past::Past;
 use text::Names;
 
-/// What is asked of a run at an instant.
+/// A question about a run at an instant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Question {
-    /// What happened in the scan.
+    /// All that happened in the scan.
     Scan,
     /// Why a step is active, or is not.
     Step(StepId),

@@ -11,7 +11,7 @@ const PASSES: usize = 200;
 /// A part of a scan.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Part {
-    /// What was written from outside before the scan.
+    /// The writes from outside before the scan.
     Outside,
     /// Inputs, time, edges, PRE and services; in the first scan the initial situation.
     Begin,

@@ -165,7 +165,7 @@ pub(crate) fn watched(compiled: &Compiled, watch: WatchId) -> Option<&Expr> {
 /// A statement that writes a word, with the conditions round it.
 pub(crate) struct Writing<'e> {
     pub(crate) at: g7_model::Span,
-    /// What the value and the conditions are made of.
+    /// The expressions of the value and of the conditions.
     pub(crate) reads: Vec<&'e Expr>,
 }
 

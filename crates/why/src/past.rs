@@ -23,7 +23,7 @@ const LOOKS: usize = 64;
 
 struct Mark {
     player: Player,
-    /// What changes from this mark to the next one: variables, then steps, then timers, a bit each.
+    /// The variables, then the steps, then the timers that change from this mark to the next one, a bit each.
     moved: Box<[u64]>,
 }
 

@@ -95,7 +95,7 @@ impl Why<'_> {
         cause.because(self.waits_for(rank, pos, state, trail))
     }
 
-    /// What keeps a transition from clearing in a pass.
+    /// The reasons that keep a transition from clearing in a pass.
     fn waits_for(&self, rank: u32, pos: Pos, state: &State, trail: &mut Trail) -> Vec<Cause> {
         let before = self.earlier(pos).unwrap_or(pos);
         let off: Vec<StepId> = self.preceding(rank).into_iter().filter(|s| !state.is_active(*s)).collect();
@@ -139,7 +139,7 @@ impl Why<'_> {
         cleared.find(|other| self.preceding(*other).iter().any(|s| mine.contains(s)))
     }
 
-    /// What happened in a scan, part by part.
+    /// The answer about a scan, part by part.
     fn scan(&self, scan: usize) -> Cause {
         let look = self.past.look(scan);
         let now = self.past.time(scan);

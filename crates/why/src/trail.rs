@@ -16,7 +16,7 @@ pub(crate) enum Event {
     Cleared(u32),
 }
 
-/// What to do with a sentence.
+/// How an answer goes on behind a sentence.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Way {
     /// Tell its causes.

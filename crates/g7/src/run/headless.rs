@@ -97,7 +97,7 @@ pub(super) fn run(bench: &Bench, source: &Source, args: &Run) -> Result<Verdict,
     Ok(verdict)
 }
 
-/// What is set when.
+/// The values that are set, with their times.
 type Script<'b> = Vec<(Nanos, &'b Item, Value)>;
 
 /// The assignments of `--set`, ordered by time, then by their order in the arguments.

@@ -20,7 +20,7 @@ struct Row {
     cells: Vec<String>,
 }
 
-/// What a column has.
+/// The content of a column.
 enum Column<'b> {
     Input(&'b Item),
     /// A signal of the charts, by its place among the signals of the bench.

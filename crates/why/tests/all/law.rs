@@ -1,8 +1,8 @@
-//! What holds for every answer: a cause is true at its time and not later than its effect, and what is followed ends
+//! The laws of answers: a cause is true at its time and not later than its effect, and what is followed ends
 //! at an input, a time, the start or what came from outside.
 
 use g7_compile::{Compiled, compile};
-use g7_engine::{Addr, GroupId, StepId};
+use g7_engine::{Addr, GroupId, Receptivity, State, StepId, begin, pass};
 use g7_host::{Runner, Tape};
 use g7_model::{Nanos, ProfileName};
 use g7_tests::generate::sample;
@@ -13,9 +13,11 @@ const CHARTS: u64 = 40;
 /// Number of scans of each chart.
 const SCANS: usize = 40;
 
-/// What a scan left.
+/// The state behind a scan.
 struct Left {
     now: Nanos,
+    /// The variables behind its beginning, in which PRE runs, and behind its passes: later parts may write them again.
+    parts: Vec<Vec<u64>>,
     words: Vec<u64>,
     active: Vec<StepId>,
     cleared: Vec<u32>,
@@ -26,6 +28,18 @@ struct Left {
 struct Run {
     tape: Tape,
     scans: Vec<Left>,
+}
+
+/// The variables behind each part of a scan but the last one.
+fn parts(c: &Compiled, mut state: State, inputs: &[u64], now: Nanos) -> Vec<Vec<u64>> {
+    let mut parts = Vec::new();
+    let mut more = begin(&c.program, &mut state, inputs, now.count()).is_ok();
+    while more && parts.len() < 70 {
+        parts.push(state.words().to_vec());
+        more = pass(&c.program, &mut state) == Ok(true) && c.program.tables().rules.stable;
+    }
+    parts.push(state.words().to_vec());
+    parts
 }
 
 fn run(c: &Compiled, seed: u64) -> Run {
@@ -45,10 +59,13 @@ fn run(c: &Compiled, seed: u64) -> Run {
                 runner.set_input(index, next() & 1);
             }
         }
+        let inputs: Vec<u64> = (0..rows.end - rows.start).map(|index| runner.input(index)).collect();
+        let parts = parts(c, runner.state().clone(), &inputs, runner.due());
         let done = runner.scan();
         let s = runner.state();
         scans.push(Left {
             now: Nanos::new(s.now()),
+            parts,
             words: s.words().to_vec(),
             active: s.active().collect(),
             cleared: s.cleared().to_vec(),
@@ -72,19 +89,22 @@ fn wrong(c: &Compiled, run: &Run, cause: &Cause) -> Option<String> {
         let rows = c.program.tables().groups[group.0 as usize].steps;
         (rows.start..rows.end).any(|s| active(StepId(s)))
     };
-    // Within a scan of several passes a value can come and go.
-    let passing = left.passes > 2;
+    // Within a scan of several passes a value can come and go; in the first scan the initial situation comes before
+    // the passes.
+    let passing = left.passes > 2 || at == 0;
     let word = |addr: Addr| left.words[addr.0 as usize];
     let is_so = match cause.fact {
         Fact::Input(addr, value) => {
             let before = at.checked_sub(1).map_or(0, |b| run.scans[b].words[addr.0 as usize]);
             word(addr) == value && before != value
         }
-        Fact::Word(addr, value) => word(addr) == value || passing,
+        Fact::Word(addr, value) => {
+            word(addr) == value || left.parts.iter().any(|words| words[addr.0 as usize] == value)
+        }
         Fact::Step(step, on) => active(step) == on || passing,
         Fact::Group(group, on) => in_group(group) == on || passing,
         Fact::Cleared(rank) => left.cleared.contains(&rank) || passing,
-        Fact::Waits(rank) => !left.cleared.contains(&rank),
+        Fact::Waits(rank) => !left.cleared.contains(&rank) || passing,
         _ => true,
     };
     (!is_so).then(|| "it is not so".to_owned())
@@ -126,7 +146,7 @@ fn check(c: &Compiled, run: &Run, cause: &Cause, ends: &mut Ends) -> Result<(), 
             Ok(())
         }
         Fact::Part(false) => Ok(()),
-        // What was told before is an aside; so nothing lies behind it but asides.
+        // A sentence that was told before is an aside; so nothing lies behind it but asides.
         Fact::Cleared(_) | Fact::Part(true) | Fact::Step(..) | Fact::Group(..) | Fact::Word(..)
             if !cause.causes.is_empty() =>
         {
@@ -137,9 +157,9 @@ fn check(c: &Compiled, run: &Run, cause: &Cause, ends: &mut Ends) -> Result<(), 
     }
 }
 
-/// True for a transition without a step before it, whose receptivity is always TRUE.
+/// True for a transition that clears without a reason but its steps, or none: its receptivity is always TRUE.
 fn is_free(c: &Compiled, rank: u32) -> bool {
-    c.program.tables().sources.contains(&rank)
+    c.program.tables().transitions[rank as usize].receptivity == Receptivity::True
 }
 
 /// An answer as text, with its facts.
@@ -197,7 +217,7 @@ fn causes_are_true_and_not_later_than_their_effects_and_chains_end() {
     }
     none(&wrong);
     assert!(ends.bounds * 100 < ends.all, "too many bounds: {ends:?}");
-    assert!(ends.code * 4 < ends.all, "too often only code is known: {ends:?}");
+    assert!(ends.code * 2 < ends.all, "too often only code is known: {ends:?}");
 }
 
 #[test]
