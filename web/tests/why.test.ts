@@ -101,7 +101,7 @@ test('the run that refutes a question is asked like any other', async () => {
   const page = await openWith(b, site, 'both.g7', { language: 'en', bottomOpen: true });
   await drawn(page);
   await page.getByRole('tab', { name: /^Prove/ }).click();
-  await page.getByRole('button', { name: /Show the run.*never left and right|never left and right/ }).last().click();
+  await page.getByRole('button', { name: /^Play the run on the chart: .*left and right/ }).click();
   await page.getByRole('tab', { name: 'Operate' }).click();
   await page.getByRole('button', { name: 'Why is left so?' }).click();
   await panel(page).locator('li').first().waitFor();
