@@ -110,6 +110,16 @@ fn wrong(c: &Compiled, run: &Run, cause: &Cause) -> Option<String> {
     (!is_so).then(|| "it is not so".to_owned())
 }
 
+/// True if a value that a cause names stands up to the scan of its effect: it was the last change before that.
+fn stands(run: &Run, cause: &Cause, until: Nanos) -> bool {
+    let mut between = run.scans.iter().filter(|s| cause.now <= s.now && s.now < until);
+    between.all(|s| match cause.fact {
+        Fact::Input(addr, value) | Fact::Word(addr, value) => s.words[addr.0 as usize] == value,
+        Fact::Step(step, on) => s.active.contains(&step) == on,
+        _ => true,
+    })
+}
+
 #[derive(Default, Debug)]
 struct Ends {
     all: usize,
@@ -126,6 +136,9 @@ fn check(c: &Compiled, run: &Run, cause: &Cause, ends: &mut Ends) -> Result<(), 
     for behind in &cause.causes {
         if behind.now > cause.now {
             return Err(told("later than its effect", behind));
+        }
+        if !stands(run, behind, cause.now) {
+            return Err(told("it changed again before its effect", behind));
         }
         check(c, run, behind, ends)?;
     }
