@@ -233,9 +233,9 @@ test('a folder with a mistake is told with its place when the page is built, and
     assert.match(ran.stderr, /half\/model\.g7: error: an exercise has a file with this name: the model solution/);
     assert.match(ran.stderr, /half\/hints\.fr\.md: error: hints here: 1; in English: 3/);
     const made = JSON.parse(readFileSync(out, 'utf8')) as { id: string; given: { template: string } | null; faults: object[]; texts: { title: string }[] }[];
-    assert.deepEqual(made.map((one) => [one.id, one.given !== null, one.faults.length]), [['half', false, 2], ['press', true, 0]]);
-    assert.deepEqual(made[1]?.texts.map((one) => one.title), ['A press with two-hand control', 'Une presse à commande bimanuelle', 'Uma prensa com comando bimanual']);
-    assert.equal(made[1]?.given?.template, readFileSync(join(PRESS, 'template.g7'), 'utf8'));
+    assert.deepEqual(made.map((one) => [one.id, one.given !== null, one.faults.length]), [['press', true, 0], ['half', false, 2]]);
+    assert.deepEqual(made[0]?.texts.map((one) => one.title), ['A press with two-hand control', 'Une presse à commande bimanuelle', 'Uma prensa com comando bimanual']);
+    assert.equal(made[0]?.given?.template, readFileSync(join(PRESS, 'template.g7'), 'utf8'));
   } finally {
     rmSync(folder, { recursive: true, force: true });
   }

@@ -4,7 +4,7 @@ import { base } from '../lib/paths';
 import type { Leaf, Parcel } from '../share/links';
 
 const own = import.meta.glob<string>('../../../course/*/*.g7', { query: '?raw', import: 'default' });
-const examples = import.meta.glob<string>(['../../../examples/{actions,bead-sorter,bottle-conveyor,modelling,structure,transport-workcell,two-tanks}/*.{g7,svg}', '!../../../examples/bead-sorter/exercise-*.g7'], { query: '?raw', import: 'default' });
+const examples = import.meta.glob<string>(['../../../examples/{actions,bead-sorter,bottle-conveyor,modelling,structure,transport-workcell,two-tanks}/*.{g7,svg}', '!../../../examples/bead-sorter/{chart,exercise-*}.g7'], { query: '?raw', import: 'default' });
 
 /** Where the examples lie, seen from a chapter. */
 const EXAMPLES = '../../examples/';
