@@ -9,7 +9,7 @@ use g7_why::Cause;
 
 use super::coverage::Coverage;
 use super::statements::{Check, Does, Line, Plan};
-use super::why;
+use super::why::Causes;
 use crate::Source;
 use crate::{Answer, Bench, Conflicts, Item, Role, fault};
 
@@ -103,18 +103,27 @@ impl<'c> Limit<'c> {
     }
 }
 
+/// A run that is recorded.
+#[derive(Clone, Copy)]
+pub(super) struct Record {
+    pub(super) causes: Option<Causes>,
+}
+
 /// Runs a test, beginning with the charts' first scan.
 pub(super) fn run<'b>(
     bench: &'b Bench,
     plan: &'b Plan,
     seed: u64,
     coverage: Option<&mut Coverage>,
-    record: bool,
+    record: Option<Record>,
     limit: Option<Limit<'_>>,
 ) -> Done {
+    let causes = record.and_then(|r| r.causes);
+    let record = record.is_some();
     let mut exec = Exec {
         bench,
-        runner: if record { bench.runner(seed).with_tape() } else { bench.runner(seed) },
+        runner: if causes.is_some() { bench.runner(seed).with_tape() } else { bench.runner(seed) },
+        causes,
         recording: record.then(|| Recording::new(bench.signals()).with_limit(4_000)),
         inputs: record.then(Vec::new),
         always: Vec::new(),
@@ -140,6 +149,7 @@ struct Exec<'b, 'c, 'l> {
     bench: &'b Bench,
     runner: Runner,
     recording: Option<Recording>,
+    causes: Option<Causes>,
     /// The inputs of each scan; none where they do not say how the charts came here.
     inputs: Option<Vec<Vec<u64>>>,
     /// The conditions of the enclosing `always` blocks.
@@ -408,7 +418,7 @@ impl<'b> Exec<'b, '_, '_> {
             time: self.now(),
             situation: self.situation(),
             chronogram: self.chronogram(&names),
-            why: why::causes(self.bench, &self.runner, &names),
+            why: self.causes.map_or_else(Vec::new, |causes| causes(self.bench, &self.runner, &names)),
             expected_at: check.map(|c| c.at),
             got,
             ..Defect::default()

@@ -25,6 +25,7 @@ pub use coverage::{Coverage, Row, Rows, Sort};
 pub use exec::Defect;
 pub use properties::{Claims, Unproved, claims, plants, unproved};
 use statements::Plan;
+pub use why::{Causes, causes};
 
 /// The result of a test.
 pub struct Outcome {
@@ -61,6 +62,8 @@ pub struct Options<'a> {
     pub limit: Option<Nanos>,
     /// Runs no more tests of a file behind the first that fails.
     pub fail_fast: bool,
+    /// Finds the causes of a failure ([`causes`]); a program that shows none need not contain this code.
+    pub causes: Option<Causes>,
 }
 
 /// Runs the tests of a file. Compiles the charts once for each plant that the tests use.
@@ -85,10 +88,8 @@ pub fn file(
                     break;
                 }
                 if options.filter.is_none_or(|f| scenario.title.contains(f)) {
-                    outcomes.push((
-                        *number,
-                        one(source, &group.bench, scenario, plan, coverage, clock, options.limit),
-                    ));
+                    outcomes
+                        .push((*number, one(source, &group.bench, scenario, plan, coverage, clock, options)));
                 }
                 progress();
             }
@@ -180,14 +181,14 @@ fn one(
     plan: &Plan,
     coverage: &mut Coverage,
     clock: &mut dyn Clock,
-    limit: Option<Nanos>,
+    options: Options<'_>,
 ) -> Outcome {
     let begun = clock.now();
     let seed = scenario.seed.unwrap_or(0);
-    let limited = limit.map(|length| exec::Limit::new(clock, length));
-    let mut first = exec::run(bench, plan, seed, Some(coverage), false, limited);
+    let limited = options.limit.map(|length| exec::Limit::new(clock, length));
+    let mut first = exec::run(bench, plan, seed, Some(coverage), None, limited);
     if first.defect.as_ref().is_some_and(|d| !d.overdue) {
-        first = exec::run(bench, plan, seed, None, true, None);
+        first = exec::run(bench, plan, seed, None, Some(exec::Record { causes: options.causes }), None);
     }
     if let Some(defect) = &mut first.defect {
         defect.describe(source);
