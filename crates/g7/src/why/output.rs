@@ -35,9 +35,8 @@ pub(super) fn text(source: &Source, cause: &Cause) -> Result<(), Failure> {
         writeln!(out, "{}{sign}{style}{}{style:#}", "  ".repeat(depth), told(&line.said))?;
     }
     let places = places(cause);
-    if let Some(first) = places.first() {
-        let title = source.place(first.0);
-        writeln!(out, "\n{}", report::marked(source, &title, &places))?;
+    if !places.is_empty() {
+        writeln!(out, "\n{}", report::marked(source, &told(&cause.said), &places))?;
     }
     Ok(out.flush()?)
 }
