@@ -5,14 +5,9 @@ use std::path::PathBuf;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use g7_model::{Nanos, ProfileName, TargetPlc};
 
+use crate::form::{EXIT_CODES, Format};
 use crate::station::Drive;
 use crate::values::{self, Assign};
-
-pub(crate) const EXIT_CODES: &str = "\
-Exit codes:
-  0  fine
-  1  problems were found, or a test failed
-  2  bad usage, or something outside the chart: no such file, a full disk";
 
 const FIRST_STEPS: &str = "\
 First steps:
@@ -52,15 +47,6 @@ pub(crate) enum Color {
     Always,
     /// Never.
     Never,
-}
-
-/// The format of the output.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Format {
-    /// For people.
-    Text,
-    /// For programs: one JSON object.
-    Json,
 }
 
 /// The format of problems.

@@ -29,6 +29,7 @@ mod failure;
 mod files;
 mod fmt;
 mod fmu;
+mod form;
 mod generate;
 mod grade;
 mod history;

@@ -15,7 +15,6 @@ use g7_verify::{Evidence, Move, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Shelved, shelf};
-use crate::between;
 use crate::problems;
 use crate::prove::Found;
 use crate::run::Scan;
@@ -192,7 +191,7 @@ pub(crate) fn check(work: Work, language: Language) -> Result<Checked, Said> {
     let Given { template, uses, sealed } = work.exercise;
     let given: Files = uses.into_iter().filter_map(|f| Some((f.file, f.text?.into_bytes()))).collect();
     let exercise = Exercise::handed(template.as_bytes(), &given, &sealed)?;
-    let mut file = between::open(&work.name, work.text)?;
+    let mut file = File::open(&work.name, work.text)?;
     file.lend(shelf(work.uses));
     file.language = language;
     let mut read = |path: &str| {

@@ -10,8 +10,9 @@ use std::io::Write;
 use g7_model::say;
 use g7_rig::testing::Coverage;
 
-use crate::cli::{Format, Test};
+use crate::cli::Test;
 use crate::failure::{Failure, Verdict};
+use crate::form::Format;
 use crate::message::talk;
 use crate::progress::Progress;
 use crate::tongue::language;

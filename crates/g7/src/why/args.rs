@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use g7_model::{Nanos, ProfileName};
 
-use crate::cli::{EXIT_CODES, Format};
+use crate::form::{EXIT_CODES, Format};
 use crate::values::{self, Assign};
 
 /// The arguments of `g7 why`.

@@ -13,8 +13,8 @@ use g7_model::{Nanos, say};
 use g7_rig::{Bench, Options, question};
 use g7_why::{NoAnswer, Question};
 
-use crate::cli::Format;
 use crate::failure::{Failure, Verdict, raw};
+use crate::form::Format;
 use crate::{files, run, sources, values, wiring};
 
 pub(crate) fn why(args: &Why) -> Result<Verdict, Failure> {
