@@ -1,4 +1,4 @@
-//! What the arguments of several commands share.
+//! The parts of arguments that several commands share: the form of the output, and the exit codes for the help.
 
 use clap::ValueEnum;
 
