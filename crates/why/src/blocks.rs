@@ -140,7 +140,7 @@ impl Why<'_> {
             parts.iter().map(|d| self.part(d, before, !by_step && d.last, trail)).collect();
         causes.push(match step {
             Some(step) => self.event(Signal::Step(input.step), step, by_step, trail),
-            None => self.from_start(Signal::Step(input.step), by_step),
+            None => self.since_start(Signal::Step(input.step), by_step),
         });
         causes.sort_by_key(|c| c.aside);
         cause.because(causes)

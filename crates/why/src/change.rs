@@ -91,7 +91,7 @@ impl Why<'_> {
     }
 
     /// The sentence about a signal that never changed.
-    pub(crate) fn from_start(&self, signal: Signal, follow: bool) -> Cause {
+    pub(crate) fn since_start(&self, signal: Signal, follow: bool) -> Cause {
         let look = self.past.look(0);
         let on = signal.of(self.past.program, look.before(0)) != 0;
         let (said, place) = match signal {
@@ -165,7 +165,7 @@ impl Why<'_> {
                 let moved = operands.iter().filter(|s| look.changes(self.past.program, **s, change.stage));
                 moved.take(STEPS).map(|s| self.event(*s, change, at_once, trail)).collect()
             }
-            None => operands.iter().take(STEPS).map(|s| self.from_start(*s, false)).collect(),
+            None => operands.iter().take(STEPS).map(|s| self.since_start(*s, false)).collect(),
         };
         if at_once {
             return standing;
@@ -312,7 +312,7 @@ impl Why<'_> {
             let last = by_step && *since == enabled;
             causes.push(match since {
                 Some(since) => self.event(Signal::Step(*step), *since, last, trail),
-                None => self.from_start(Signal::Step(*step), last),
+                None => self.since_start(Signal::Step(*step), last),
             });
         }
         // First what is followed; a step that its own receptivity reads is told once.

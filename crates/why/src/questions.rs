@@ -72,7 +72,7 @@ impl Why<'_> {
     fn variable(&self, addr: Addr, words: u32, end: Pos, trail: &mut Trail) -> Cause {
         let signals: Vec<Signal> = (0..words.max(1)).map(|i| Signal::Word(Addr(addr.0 + i))).collect();
         let Some(change) = self.past.last_change(&signals, end) else {
-            return self.from_start(Signal::Word(addr), true);
+            return self.since_start(Signal::Word(addr), true);
         };
         let look = self.past.look(change.scan);
         let moved = signals.iter().find(|s| look.changes(self.past.program, **s, change.stage));

@@ -165,7 +165,7 @@ impl Why<'_> {
     pub(crate) fn part(&self, d: &Decisive<'_>, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
         match (parts::read(d.part), d.since) {
             (Some(signal), Since::Change(change)) => return self.event(signal, change, follow, trail),
-            (Some(signal), Since::Start) => return self.from_start(signal, follow),
+            (Some(signal), Since::Start) => return self.since_start(signal, follow),
             _ => {}
         }
         let (text, value) = (self.names.expr(d.part), truth(d.value));
@@ -215,7 +215,7 @@ impl Why<'_> {
     pub(crate) fn standing(&self, signal: Signal, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
         match self.past.last_change(&[signal], pos) {
             Some(change) => self.event(signal, change, follow, trail),
-            None => self.from_start(signal, follow),
+            None => self.since_start(signal, follow),
         }
     }
 }

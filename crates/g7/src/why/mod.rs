@@ -47,7 +47,9 @@ pub(crate) fn why(args: &Why) -> Result<Verdict, Failure> {
             trace::taped(&args.run, &alone, &bench)?
         }
     };
-    let cause = ask(&bench, &tape, asked, time)?;
+    // A run that is made up to the time ends with the last scan before it, whose situation is that of the time.
+    let up_to = recorded == Recorded::No && args.duration.is_none();
+    let cause = ask(&bench, &tape, asked, time, up_to)?;
     match args.format {
         Format::Text => output::text(&source, &cause)?,
         Format::Json => output::json(&source, &cause)?,
@@ -55,13 +57,20 @@ pub(crate) fn why(args: &Why) -> Result<Verdict, Failure> {
     Ok(Verdict::Fine)
 }
 
-fn ask(bench: &Bench, tape: &Tape, asked: Question, time: Option<Nanos>) -> Result<g7_why::Cause, Failure> {
+fn ask(
+    bench: &Bench,
+    tape: &Tape,
+    asked: Question,
+    time: Option<Nanos>,
+    up_to: bool,
+) -> Result<g7_why::Cause, Failure> {
     let why = g7_why::Why::new(&bench.compiled, tape).map_err(|d| {
         let now = raw(d.now.plain());
         Failure::Usage(say!("the run takes another course than the record at scan {} ({now})", d.scan))
     })?;
     let end = why.span().ok_or_else(|| Failure::Usage(NoAnswer::Empty.said()))?.1;
-    why.ask(asked, time.unwrap_or(end)).map_err(|e| Failure::Usage(e.said()))
+    let now = time.map_or(end, |time| if up_to { time.min(end) } else { time });
+    why.ask(asked, now).map_err(|e| Failure::Usage(e.said()))
 }
 
 /// The name and the time of a question; a time that stands alone is no name.

@@ -125,8 +125,8 @@ chart G {
   step 3
   step 4 { N m }
   1 -> 2 when ↑a
-  2 -> 3
-  3 -> 4
+  2 -> 3 when =1
+  3 -> 4 when =1
   4 -> 1 when not a
 }
 ";
