@@ -37,7 +37,7 @@ pub(crate) fn not_here<T>() -> Result<T, Said> {
 #[serde(tag = "between", rename_all = "snake_case")]
 pub(crate) enum Between {
     /// A question about files that the other module has open.
-    About { files: Vec<Lent>, ask: Request },
+    About { files: Vec<Lent>, ask: Box<Request> },
     /// Converts a file of another tool. The answer is the message `imported`, which the first module then gets.
     Import { ask: Foreign },
     /// A converted file to be opened.

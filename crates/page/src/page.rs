@@ -109,7 +109,7 @@ impl Page {
                     let name = lent.file.clone();
                     page.files.insert(name, lent.file(page.language)?);
                 }
-                page.answer(ask)
+                page.answer(*ask)
             }
             Between::Import { ask } => {
                 if !WHOLE {
