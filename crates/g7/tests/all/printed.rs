@@ -202,7 +202,8 @@ fn try_all(from: &str, text: &str, wrong: &mut Vec<String>, counts: &mut [usize;
             folder.write("handed-in/ana.g7", folder.read("lamp/model.g7"));
         }
         if command.starts_with("g7 why run.") {
-            let run = ["run", "tank", "--headless", "--for", "20s", "--trace", "run.csv", "--record", "run.tape"];
+            let run =
+                ["run", "tank", "--headless", "--for", "20s", "--trace", "run.csv", "--record", "run.tape"];
             folder.g7(&run).is(0);
         }
         if command.starts_with("g7 new ") {
