@@ -10,7 +10,7 @@ const examples = import.meta.glob<string>(['../../../examples/{actions,bead-sort
 const EXAMPLES = '../../examples/';
 
 /** The name under which a chart of a chapter is opened: an example keeps its place in the folder of examples. */
-const nameOf = (href: string): string => (href.startsWith(EXAMPLES) ? href.slice(EXAMPLES.length) : `course/${base(href)}`);
+export const nameOf = (href: string): string => (href.startsWith(EXAMPLES) ? href.slice(EXAMPLES.length) : `course/${base(href)}`);
 
 /** The chart that a chapter names, with the pictures of its plants. */
 export async function chartOf(chapter: string, href: string): Promise<Parcel> {

@@ -1,4 +1,5 @@
 // The course: its chapters in the language of the page, the one that is read, and what the browser remembers of the reader.
+import { untrack } from 'svelte';
 import { files } from '../lib/files.svelte';
 import { t, type Language } from '../lib/i18n';
 import { embedded } from '../lib/embedded';
@@ -49,7 +50,11 @@ class Course {
   chapter: string | null = $state(null);
   /** The files in which charts of the course were opened. */
   #opened = new Map<string, string>();
-  #books = new Map<Language, Promise<Chapter[]>>();
+  #books = new Map<Language, Chapter[]>();
+  /** The chapters in the language that was asked for last. */
+  chapters: readonly Chapter[] = $state.raw([]);
+  /** The reason why they cannot be had. */
+  failed = $state('');
 
   readonly last: string | null = $derived(this.#kept.last);
 
@@ -62,15 +67,17 @@ class Course {
     if (!this.answered(id)) this.#keep({ answered: [...this.#kept.answered, id] });
   }
 
-  /** The chapters in a language. */
-  chapters(language: Language): Promise<Chapter[]> {
-    const known = this.#books.get(language);
-    if (known) return known;
-    // A browser never asks again for a part that it could not get, so it is not asked in vain.
-    if (link.state !== 'up') return Promise.reject(new Refused(t('gone.part')));
-    const made = books[language]().then(({ texts }) => ordered(texts));
-    this.#books.set(language, made);
-    return made;
+  /** Fetches the chapters in a language. */
+  async load(language: Language): Promise<void> {
+    this.failed = '';
+    try {
+      const found = this.#books.get(language) ?? (await fetched(language));
+      this.#books.set(language, found);
+      // The reader may have chosen another language meanwhile.
+      if (language === prefs.language) this.chapters = found;
+    } catch (error) {
+      this.failed = (error as Error).message;
+    }
   }
 
   /** Shows a chapter. The editor beside it begins with the first chart of the chapter if nothing is open. */
@@ -111,6 +118,12 @@ class Course {
       // The course also works in a browser without storage.
     }
   }
+}
+
+async function fetched(language: Language): Promise<Chapter[]> {
+  // A browser never asks again for a part that it could not get, so it is not asked in vain.
+  if (untrack(() => link.state) !== 'up') throw new Refused(t('gone.part'));
+  return ordered((await books[language]()).texts);
 }
 
 function ordered(texts: Record<string, string>): Chapter[] {

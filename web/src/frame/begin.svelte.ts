@@ -1,5 +1,6 @@
 // The start of the page: finds the server or the playground, opens the first file, restores unsaved
 // work.
+import { afterChanges } from '../lib/changes.svelte';
 import { drafts } from '../lib/drafts.svelte';
 import { embedded } from '../lib/embedded';
 import { files, type OpenFile } from '../lib/files.svelte';
@@ -57,19 +58,7 @@ async function changedOutside({ path, hash }: Changed): Promise<void> {
 /** Keeps copies of unsaved work, one second after a change; call once, inside a component. */
 export function keepDrafts(): void {
   if (embedded) return;
-  const waiting = new Set<OpenFile>();
-  $effect(() => {
-    for (const file of files.list) {
-      // Read here, so that this is done anew after each change of them.
-      void [file.text, file.changed];
-      if (waiting.has(file)) continue;
-      waiting.add(file);
-      setTimeout(() => {
-        waiting.delete(file);
-        void keep(file);
-      }, 1000);
-    }
-  });
+  afterChanges(1000, (file) => [file.text, file.changed], (file) => void keep(file));
 }
 
 async function keep(file: OpenFile): Promise<void> {

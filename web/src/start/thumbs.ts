@@ -16,6 +16,20 @@ export interface Thumb {
   plant: boolean;
 }
 
+/** Calls a function once, when an element comes near the visible part of the page; returns the end of the wait. */
+export function whenSeen(element: HTMLElement, then: () => void): () => void {
+  const sight = new IntersectionObserver(
+    (entries) => {
+      if (!entries.some((e) => e.isIntersecting)) return;
+      sight.disconnect();
+      then();
+    },
+    { rootMargin: '200px' },
+  );
+  sight.observe(element);
+  return () => sight.disconnect();
+}
+
 const known = new Map<string, Promise<Thumb>>();
 let last: Promise<unknown> = Promise.resolve();
 
@@ -35,7 +49,7 @@ export function queued(key: string, path: string, read: () => Promise<string>): 
   return found;
 }
 
-export async function picture(path: string, text: string): Promise<Thumb> {
+async function picture(path: string, text: string): Promise<Thumb> {
   const prefix = '\u0000gallery/';
   const { file, charts, tests, plants } = await lent(await page.call({ do: 'open', file: prefix + path, text }), prefix);
   try {
