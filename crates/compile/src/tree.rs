@@ -271,9 +271,8 @@ impl Expr {
         }
     }
 
-    /// Visits this expression and all within it, those in statements too.
-    pub fn visit(&self, f: &mut dyn FnMut(&Expr)) {
-        f(self);
+    /// Calls `f` with the expressions from which this one is made, from left to right; with none of its statements.
+    pub fn operands<'e>(&'e self, f: &mut dyn FnMut(&'e Expr)) {
         match &self.kind {
             ExprKind::Const(..)
             | ExprKind::Text(..)
@@ -295,22 +294,26 @@ impl Expr {
             | ExprKind::Convert(_, _, e)
             | ExprKind::Trunc(_, _, e)
             | ExprKind::ToText { value: e, .. }
-            | ExprKind::FromText(_, e) => e.visit(f),
+            | ExprKind::FromText(_, e)
+            | ExprKind::After(_, e) => f(e),
             ExprKind::Gate(_, a, b)
             | ExprKind::Arith(_, _, a, b)
             | ExprKind::Compare(_, _, a, b)
             | ExprKind::CompareText(_, a, b) => {
-                a.visit(f);
-                b.visit(f);
+                f(a);
+                f(b);
             }
-            ExprKind::Call(_, _, args) | ExprKind::TextCall { args, .. } => {
-                args.iter().for_each(|a| a.visit(f));
-            }
-            ExprKind::After(list, e) => {
-                visit_all(list, f);
-                e.visit(f);
-            }
+            ExprKind::Call(_, _, args) | ExprKind::TextCall { args, .. } => args.iter().for_each(f),
         }
+    }
+
+    /// Visits this expression and all within it, those in statements too.
+    pub fn visit(&self, f: &mut dyn FnMut(&Expr)) {
+        f(self);
+        if let ExprKind::After(list, _) = &self.kind {
+            visit_all(list, f);
+        }
+        self.operands(&mut |e| e.visit(f));
     }
 
     /// Its evaluation can end in a fault or change something, so that it matters

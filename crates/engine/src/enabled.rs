@@ -64,8 +64,8 @@ pub fn judged(p: &Program, s: &State) -> Result<State, Fault> {
 }
 
 impl State {
-    /// True if a chart ([`crate::Transition::chart`]) stands still in the pass that judges its transitions, since it is
-    /// not due or an order acts on it. Of [`judged`] states alone.
+    /// True if a chart ([`crate::Transition::chart`]) clears no transition in this pass: its period is not over, or an
+    /// order holds it. Call this only on a state that [`judged`] returned.
     pub fn is_blocked(&self, chart: u32) -> bool {
         self.scratch.any_blocked && self.scratch.blocked.get(chart as usize).copied().unwrap_or(false)
     }

@@ -38,7 +38,7 @@ struct Told {
 #[derive(Debug, Deserialize, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ExerciseGiven", optional_fields = nullable))]
 pub(crate) struct Given {
-    /// The text that the student gets.
+    /// The text of the template, which the student gets.
     template: String,
     /// The files that it uses, by their paths from its folder.
     uses: Vec<Shelved>,

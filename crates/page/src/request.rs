@@ -161,7 +161,7 @@ requests! {
     /// Compares two files for every sequence of inputs, as far as the limits go.
     fn compare(#[serde(flatten)] wish: Both) -> Compared;
 
-    /// An exercise for students, from the files of its folder by their paths in it.
+    /// Makes of the files of an exercise what students get. The names of the files are their paths in its folder.
     fn exercise_pack(folder: String, files: Vec<Shelved>) -> Packed;
 
     /// Checks the work of a student by the tests and questions of an exercise.
@@ -278,7 +278,7 @@ requests! {
         most: usize,
     ) -> Lanes;
 
-    /// The record of a run, from its start: all that entered the charts. It is for `why`.
+    /// The record of a run from its start: all that entered the charts. The message `why` needs it.
     fn run_tape(run: String) -> Text;
 
     /// Why something happened in a run, of which this is the record.

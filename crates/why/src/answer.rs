@@ -11,7 +11,7 @@ use g7_model::{Nanos, Said, Span};
 pub struct Cause {
     /// The sentence.
     pub said: Said,
-    /// The same for programs.
+    /// The content of the sentence, for code that must not read the words.
     pub fact: Fact,
     /// The instant of which it is true.
     pub now: Nanos,
@@ -23,7 +23,7 @@ pub struct Cause {
     pub causes: Vec<Cause>,
 }
 
-/// The content of a sentence.
+/// The content of a sentence. "Here a chain ends" means that a sentence with this content has no causes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fact {
     /// A word of an input has this value from this scan on: here a chain ends.
@@ -59,7 +59,7 @@ pub enum Fact {
 }
 
 impl Fact {
-    /// The word for it in answers for programs.
+    /// The word for this kind of sentence in JSON.
     pub fn word(self) -> &'static str {
         match self {
             Fact::Input(..) => "input",

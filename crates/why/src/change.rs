@@ -20,22 +20,32 @@ const STEPS: usize = 2;
 impl Why<'_> {
     /// The sentence about a change that a moment brought, with its causes where they are followed.
     pub(crate) fn event(&self, signal: Signal, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
-        let mut cause = self.told(signal, pos);
-        if !follow {
-            cause.aside = true;
-            return cause;
-        }
-        match trail.enter(Event::Changed(signal), pos) {
-            Way::On => {
-                let causes = self.behind(signal, pos, trail);
+        let cause = self.told(signal, pos);
+        self.followed(cause, (Event::Changed(signal), pos), follow, trail, |trail| {
+            self.behind(signal, pos, trail)
+        })
+    }
+
+    /// A sentence about an event with its causes, where they are followed and were not told before.
+    fn followed(
+        &self,
+        mut cause: Cause,
+        (event, pos): (Event, Pos),
+        follow: bool,
+        trail: &mut Trail,
+        behind: impl FnOnce(&mut Trail) -> Vec<Cause>,
+    ) -> Cause {
+        match follow.then(|| trail.enter(event, pos)) {
+            Some(Way::On) => {
+                let causes = behind(trail);
                 trail.leave();
                 cause.because(causes)
             }
-            Way::Told | Way::Short => {
+            Some(Way::Bound) => cause.because([self.bound(pos)]),
+            None | Some(Way::Told | Way::Short) => {
                 cause.aside = true;
                 cause
             }
-            Way::Bound => cause.because([self.bound(pos)]),
         }
     }
 
@@ -262,28 +272,11 @@ impl Why<'_> {
     pub(crate) fn clearing(&self, rank: u32, pos: Pos, follow: bool, trail: &mut Trail) -> Cause {
         let then = at(self.time(pos));
         let said = say!("the transition `{}` cleared at {then}", self.names.transition(rank));
-        let mut cause = Cause::new(
-            said,
-            Fact::Cleared(rank),
-            self.time(pos),
-            [self.names.symbols().transition_place(rank)],
-        );
-        if !follow {
-            cause.aside = true;
-            return cause;
-        }
-        match trail.enter(Event::Cleared(rank), pos) {
-            Way::On => {
-                let causes = self.behind_clearing(rank, pos, trail);
-                trail.leave();
-                cause.because(causes)
-            }
-            Way::Told | Way::Short => {
-                cause.aside = true;
-                cause
-            }
-            Way::Bound => cause.because([self.bound(pos)]),
-        }
+        let place = self.names.symbols().transition_place(rank);
+        let cause = Cause::new(said, Fact::Cleared(rank), self.time(pos), [place]);
+        self.followed(cause, (Event::Cleared(rank), pos), follow, trail, |trail| {
+            self.behind_clearing(rank, pos, trail)
+        })
     }
 
     fn behind_clearing(&self, rank: u32, pos: Pos, trail: &mut Trail) -> Vec<Cause> {

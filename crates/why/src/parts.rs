@@ -242,43 +242,10 @@ pub(crate) fn inner<'e>(e: &'e Expr, addr: Addr, found: &mut Vec<Writing<'e>>) {
 
 /// The lists of statements that stand at the head of an expression or of its operands.
 fn placed<'e>(e: &'e Expr, lists: &mut Vec<&'e [Stmt]>) {
-    match &e.kind {
-        ExprKind::After(list, value) => {
-            lists.push(list);
-            placed(value, lists);
-        }
-        ExprKind::Not(x)
-        | ExprKind::Neg(_, x)
-        | ExprKind::Convert(_, _, x)
-        | ExprKind::Trunc(_, _, x)
-        | ExprKind::FromText(_, x)
-        | ExprKind::Element { index: x, .. }
-        | ExprKind::ToText { value: x, .. } => placed(x, lists),
-        ExprKind::Gate(_, a, b)
-        | ExprKind::Arith(_, _, a, b)
-        | ExprKind::Compare(_, _, a, b)
-        | ExprKind::CompareText(_, a, b) => {
-            placed(a, lists);
-            placed(b, lists);
-        }
-        ExprKind::Call(_, _, args) | ExprKind::TextCall { args, .. } => {
-            args.iter().for_each(|a| placed(a, lists))
-        }
-        ExprKind::Const(..)
-        | ExprKind::Text(..)
-        | ExprKind::Word(..)
-        | ExprKind::Active(_)
-        | ExprKind::WasActive(_)
-        | ExprKind::GroupActive(_)
-        | ExprKind::Time(_)
-        | ExprKind::Tenths(_)
-        | ExprKind::Rise(_)
-        | ExprKind::Fall(_)
-        | ExprKind::Timer(_)
-        | ExprKind::Due(_)
-        | ExprKind::ScanTime
-        | ExprKind::Random(_) => {}
+    if let ExprKind::After(list, _) = &e.kind {
+        lists.push(list);
     }
+    e.operands(&mut |x| placed(x, lists));
 }
 
 /// The steps of a group.

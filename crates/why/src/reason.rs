@@ -54,7 +54,7 @@ pub(crate) struct Decisive<'e> {
 }
 
 impl Why<'_> {
-    /// The moment before a stage; `None` before the first scan.
+    /// The moment before this one: the stage before it, or the end of the scan before. `None` at the start of the run.
     pub(crate) fn earlier(&self, pos: Pos) -> Option<Pos> {
         match pos.stage.checked_sub(1) {
             Some(stage) => Some(Pos { scan: pos.scan, stage }),

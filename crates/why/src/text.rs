@@ -26,7 +26,7 @@ impl<'a> Names<'a> {
         &self.compiled.symbols
     }
 
-    /// The name of a word: of a variable, an element of a table or a member.
+    /// The name of the variable that lies at this address; with an index if it is an element of an array.
     pub(crate) fn word(&self, addr: Addr) -> String {
         let mut all = self.symbols().variables.iter();
         if let Some(v) = all.find(|v| v.addr == addr && v.words() == 1) {

@@ -1,4 +1,4 @@
-// Plays the run of a test that fails, or of a question that is refuted, up to the moment where it goes wrong.
+// Plays the run of a failed test, or of a refuted question, and stops where it fails.
 import { tick } from 'svelte';
 import { openSheet } from '../frame/sheets';
 import type { OpenFile } from '../lib/files.svelte';
@@ -13,13 +13,13 @@ export async function play(file: OpenFile, title: string, scans: ProofScan[]): P
   if (shape.phone) openSheet(null);
   else shell.below('chronogram');
   await show(file, row, file.look.hash, (run) => {
-    // The cursor stands at the moment where it goes wrong, and the step that is active then is in sight.
+    // Puts the cursor of the chronogram at the failure, and moves the drawing to a step that is active there.
     chronogram.a = run.end;
     const [active] = run.active;
     const id = active === undefined ? undefined : run.started.steps[active]?.id;
     if (id) shell.jump(file, id);
     shell.select([]);
-    // The panel of a new run comes forward, and the findings are still of use.
+    // A new run shows the panel *Operate*; the student still needs the findings.
     void tick().then(() => (shell.tabs.right = 'exercise'));
   });
 }

@@ -210,7 +210,7 @@ export type ExerciseFault = {
 
 /** The part of an exercise that checks a work. */
 export type ExerciseGiven = {
-  /** The text that the student gets. */
+  /** The text of the template, which the student gets. */
   template: string;
   /** The files that it uses, by their paths from its folder. */
   uses: Array<Shelved>;
@@ -1164,7 +1164,7 @@ export interface Requests {
     /** Most memory for them, in MiB. */
     mib: number;
   };
-  /** An exercise for students, from the files of its folder by their paths in it. */
+  /** Makes of the files of an exercise what students get. The names of the files are their paths in its folder. */
   exercise_pack: { folder: string; files: Array<Shelved> };
   /** Checks the work of a student by the tests and questions of an exercise. */
   exercise_check: {
@@ -1217,7 +1217,7 @@ export interface Requests {
   /** Asks again for the description of a run that its start returned. */
   run_signals: { run: string };
   run_lanes: { run: string; signals: Array<number>; from_ms: number; to_ms: number; most?: number };
-  /** The record of a run, from its start: all that entered the charts. It is for `why`. */
+  /** The record of a run from its start: all that entered the charts. The message `why` needs it. */
   run_tape: { run: string };
   /** Why something happened in a run, of which this is the record. */
   why: {
@@ -1228,7 +1228,7 @@ export interface Requests {
     tape: string;
     /** The id of a symbol, or a name; without one it is asked what happened in the scan. */
     about?: string | null;
-    /** The instance of the symbol, if its chart has parameters. */
+    /** The instance that is asked about, if the chart of the symbol has parameters. */
     instance?: string | null;
     /** The instant of the scan; without one, that of the last. */
     ms?: number | null;

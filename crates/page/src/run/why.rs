@@ -32,7 +32,7 @@ pub(crate) struct Asked {
     tape: String,
     /// The id of a symbol, or a name; without one it is asked what happened in the scan.
     about: Option<String>,
-    /// The instance of the symbol, if its chart has parameters.
+    /// The instance that is asked about, if the chart of the symbol has parameters.
     instance: Option<String>,
     /// The instant of the scan; without one, that of the last.
     ms: Option<f64>,

@@ -60,7 +60,7 @@ fn taped(bench: &Bench, script: &str) -> Tape {
     runner.tape().cloned().expect("it has a tape")
 }
 
-/// An answer as the terminal has it.
+/// The lines of an answer, as `g7 why` prints them.
 fn shown(cause: &Cause, language: Language) -> String {
     let mut out = String::new();
     for (depth, line) in cause.lines() {

@@ -153,7 +153,7 @@ fn check(c: &Compiled, run: &Run, cause: &Cause, ends: &mut Ends) -> Result<(), 
             ends.bounds += 1;
             Ok(())
         }
-        // Counters and the like: code that runs by itself. An order stands for what the system or a chart above does.
+        // A chain may end at code that runs in each scan, such as a counter, or at an order of the system or of a chart above.
         Fact::Code | Fact::Order | Fact::Waits(_) => {
             ends.code += 1;
             Ok(())

@@ -1,2 +1,2 @@
-// The chapters of the course in Portuguese, a part of the page that is fetched when the list of chapters is shown.
+// The chapters of the course in Portuguese. The browser fetches this file when the start page or the reader first shows the list of chapters.
 export const texts = import.meta.glob<string>('../../../../course/*/text.pt.md', { query: '?raw', import: 'default', eager: true });
