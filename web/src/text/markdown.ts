@@ -1,10 +1,9 @@
-// Converts the small part of Markdown that explanations and exercises use to nodes of the page.
+// Converts the small part of Markdown that explanations use to nodes of the page.
 
 function inline(text: string, into: HTMLElement): void {
-  for (const part of text.split(/(`[^`]+`|\*\*[^*]+\*\*|\*[^*\s][^*]*\*)/)) {
+  for (const part of text.split(/(`[^`]+`|\*\*[^*]+\*\*)/)) {
     if (part.startsWith('`') && part.length > 2) into.appendChild(element('code', part.slice(1, -1)));
     else if (part.startsWith('**') && part.length > 4) into.appendChild(element('strong', part.slice(2, -2)));
-    else if (part.startsWith('*') && part.length > 2) into.appendChild(element('em', part.slice(1, -1)));
     else into.append(part);
   }
 }
@@ -24,13 +23,9 @@ function code(block: string): HTMLElement {
   return pre;
 }
 
-/** The mark before the items of a list, and before those of a list with numbers. */
-const BULLET = /^[-*] /m;
-const NUMBER = /^\d+\. /m;
-
-function list(block: string, kind: 'ul' | 'ol'): HTMLElement {
-  const ul = document.createElement(kind);
-  for (const item of block.split(kind === 'ul' ? BULLET : NUMBER).filter((line) => line.trim() !== '')) {
+function list(block: string): HTMLElement {
+  const ul = document.createElement('ul');
+  for (const item of block.split(/^[-*] /m).filter((line) => line.trim() !== '')) {
     const li = document.createElement('li');
     inline(item.trim().replace(/\s*\n\s*/g, ' '), li);
     ul.appendChild(li);
@@ -53,7 +48,7 @@ export function markdown(text: string): HTMLElement {
   for (const part of text.trim().split(/^(```[\s\S]*?^```$)/m)) {
     if (part.startsWith('```')) root.appendChild(code(part));
     else for (const block of part.split(/\n{2,}/).map((b) => b.trim())) {
-      if (block !== '') root.appendChild(/^[-*] /.test(block) ? list(block, 'ul') : /^\d+\. /.test(block) ? list(block, 'ol') : paragraph(block));
+      if (block !== '') root.appendChild(/^[-*] /.test(block) ? list(block) : paragraph(block));
     }
   }
   return root;
