@@ -64,6 +64,7 @@ const RARE: Message[] = [
   { do: 'forms' },
   ...['c', 'rust', 'st', 'plcopen', 'sfc', 'mermaid', 'svg', 'nothing'].map((to) => ({ do: 'export', file: 'a.g7', to })),
   { do: 'prove', file: 'a.g7', states: 1000, mib: 64 },
+  { do: 'test_why', file: 'a.g7', name: 'goes on' },
   { do: 'prove_ways', file: 'a.g7', hash: 'of no text', question: 0, run: [] },
   { do: 'compare', files: ['a.g7', 'a.g7'], profiles: [null, 'iec61131'], states: 1000, mib: 64 },
   { do: 'exercise_pack', folder: 'on', files: [{ file: 'statement.md', text: '# On\n' }, { file: 'template.g7', text: CHART }, { file: 'model.g7', text: CHART }] },

@@ -9,13 +9,15 @@ import { why as words } from '../src/lib/words/why';
 const LINE = 'input go, stop : BOOL\noutput motor : BOOL\n\nchart G1 {\n  initial step 0\n  step 1 {\n    N motor\n  }\n  0 -> 1 when ↑go\n  1 -> 0 when stop\n}\n';
 /** Both branches can be active, which a question forbids. */
 const BOTH = 'input a, b : BOOL\noutput left, right : BOOL\n\nchart C {\n  initial step 1\n  step 2 { N left }\n  step 3 { N right }\n  1 -> 2 when a\n  1 -> 3 when b\n}\n\nprove never left and right\n';
+/** Its test fails: nothing stops the motor. */
+const FAILS = `${LINE}\ntest "it stops" {\n  set go := TRUE\n  wait until motor within 1s\n  set go := FALSE\n  wait 100ms\n  expect not motor\n}\n`;
 const AT = { en: 0, fr: 1, pt: 2 } as const;
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  [site, b] = await Promise.all([playground({ 'line.g7': LINE, 'both.g7': BOTH }), browser()]);
+  [site, b] = await Promise.all([playground({ 'line.g7': LINE, 'both.g7': BOTH, 'fails.g7': FAILS }), browser()]);
 });
 
 after(async () => {
@@ -106,5 +108,24 @@ test('the run that refutes a question is asked like any other', async () => {
   await page.getByRole('button', { name: 'Why is left so?' }).click();
   await panel(page).locator('li').first().waitFor();
   assert.ok((await said(page)).some((text) => text.startsWith('the input a became TRUE')), (await said(page)).join('\n'));
+  await done(page);
+});
+
+test('a failed test says why, and is played to its failure', async () => {
+  const page = await openWith(b, site, 'fails.g7', { language: 'en', bottomOpen: true, bottom: 320 });
+  await drawn(page);
+  await page.getByRole('tab', { name: 'Tests' }).click();
+  await page.getByRole('button', { name: 'Run all tests' }).click();
+  await page.getByText('1 of 1 failed').waitFor();
+  await page.getByRole('button', { name: 'Why? it stops' }).click();
+  const because = page.locator('.because .said');
+  await because.first().waitFor();
+  const all = (await because.allTextContents()).map((text) => text.trim());
+  assert.ok(all[0]?.startsWith('motor became TRUE'), all.join('\n'));
+  assert.ok(all.some((text) => text.startsWith('the input go became TRUE')), all.join('\n'));
+  assert.deepEqual(await axe(page), []);
+  await page.getByRole('button', { name: 'Play to this moment: it stops' }).click();
+  await page.getByText('Run up to the failure: it stops').waitFor();
+  await until(async () => (await page.getByRole('switch', { name: 'motor', exact: true }).getAttribute('aria-checked')) === 'true', 'the run stays where it fails');
   await done(page);
 });

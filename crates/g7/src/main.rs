@@ -47,6 +47,7 @@ mod post;
 mod progress;
 mod project;
 mod prove;
+mod reasons;
 mod report;
 mod run;
 mod sarif;

@@ -11,7 +11,7 @@ use g7_grade::{Answered, Ended, Exercise, Fault, Files, Graded, Limits, Mark, Te
 use g7_host::VirtualClock;
 use g7_ide::File;
 use g7_model::{Language, Nanos, Said, Span};
-use g7_verify::{Evidence, Move, Verdict};
+use g7_verify::{Evidence, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::{Shelved, shelf};
@@ -252,10 +252,7 @@ fn test(test: &Tested, language: Language) -> TestRow {
         why: test.ended.why().filter(|_| !test.hidden).map(|why| why.in_language(language)),
         time_ms: time,
         got: seen.map(|d| d.got.clone()).unwrap_or_default(),
-        run: seen.filter(|d| !d.inputs.is_empty()).map(|d| {
-            let moves = d.inputs.iter().map(|inputs| Move { inputs: inputs.clone(), wait: 0 });
-            Scan::list(&moves.collect::<Vec<_>>())
-        }),
+        run: seen.and_then(|d| Scan::up_to(d)),
     }
 }
 

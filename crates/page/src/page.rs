@@ -351,6 +351,13 @@ impl Answers for Page {
         testing::test(self.file(&file)?, name.as_deref())
     }
 
+    fn test_why(&mut self, file: String, name: String) -> Result<testing::Reasons, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
+        testing::why(self.file(&file)?, &name)
+    }
+
     fn prove(&mut self, file: String, limits: prove::Limits) -> Result<prove::Report, Said> {
         if !WHOLE {
             return between::not_here();

@@ -16,7 +16,7 @@ use crate::places::Change;
 use crate::prove::{Both, Compared, Limits, Report as Proved, Ways, Wish as Refuted};
 use crate::redrawn::Redrawn;
 use crate::run::{Asked, Because, Form as SignalsForm, Frame, Lanes, Start, Started, Swapped};
-use crate::testing::Report as Tested;
+use crate::testing::{Reasons as TestReasons, Report as Tested};
 
 /// Makes of each row `fn name(fields) -> Answer;` a request with these fields and a method of [`Answers`]. A
 /// method that returns something else does not compile.
@@ -151,6 +151,9 @@ requests! {
 
     /// Runs the tests whose titles contain `name`, or all.
     fn test(file: String, name: Option<String>) -> Tested;
+
+    /// Why a test of this title failed.
+    fn test_why(file: String, name: String) -> TestReasons;
 
     /// Answers all questions about the file, as far as the limits go.
     fn prove(file: String, #[serde(flatten)] limits: Limits) -> Proved;
@@ -313,6 +316,7 @@ impl Request {
         match self {
             Request::export(export { file, .. })
             | Request::prove(prove { file, .. })
+            | Request::test_why(test_why { file, .. })
             | Request::prove_ways(prove_ways { file, .. }) => vec![file.clone()],
             Request::compare(compare { wish }) => wish.files.to_vec(),
             _ => Vec::new(),

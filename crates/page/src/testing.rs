@@ -3,11 +3,12 @@
 use g7_host::VirtualClock;
 use g7_ide::File;
 use g7_ide::ids;
-use g7_model::Said;
-use g7_rig::testing::{self, Coverage, Options};
+use g7_model::{Problem, Said};
+use g7_rig::testing::{self, Coverage, Defect, Options, Outcome};
 use serde::Serialize;
 
 use crate::problems;
+use crate::run::{Scan, WhyLine, lines};
 
 /// The results of the tests of a file.
 #[derive(Debug, Serialize)]
@@ -61,13 +62,43 @@ struct Reached {
     missed: Vec<String>,
 }
 
+/// Why a test failed.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "TestWhy", optional_fields))]
+pub(crate) struct Reasons {
+    /// Why the names in the condition have their values.
+    lines: Vec<WhyLine>,
+    /// The scans up to the failure; none where inputs alone do not lead there.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    run: Option<Vec<Scan>>,
+}
+
+/// Runs the test of this title once more, and asks why it failed. It is empty if the test passes.
+pub(crate) fn why(file: &File, title: &str) -> Result<Reasons, Said> {
+    let options = Options { filter: Some(title), causes: Some(testing::causes), ..Options::default() };
+    let (outcomes, _) = run(file, options, &mut Coverage::default())?;
+    let defect = outcomes.into_iter().filter(|o| o.title == title).find_map(|o| o.defect);
+    let document = file.source.whole();
+    let told = |d: &Defect| d.why.iter().flat_map(|c| lines(c, document, file.language)).collect();
+    Ok(Reasons {
+        lines: defect.as_deref().map(told).unwrap_or_default(),
+        run: defect.as_deref().and_then(Scan::up_to),
+    })
+}
+
+fn run(
+    file: &File,
+    options: Options<'_>,
+    coverage: &mut Coverage,
+) -> Result<(Vec<Outcome>, Vec<Problem>), Said> {
+    testing::file(&file.source, options, coverage, &mut VirtualClock::default(), &mut || {})
+        .map_err(|e| e.said())
+}
+
 /// Runs the tests whose titles contain a text, or all.
 pub(crate) fn test(file: &File, filter: Option<&str>) -> Result<Report, Said> {
     let mut coverage = Coverage::default();
-    let options = Options { filter, ..Options::default() };
-    let mut clock = VirtualClock::default();
-    let (outcomes, problems) =
-        testing::file(&file.source, options, &mut coverage, &mut clock, &mut || {}).map_err(|e| e.said())?;
+    let (outcomes, problems) = run(file, Options { filter, ..Options::default() }, &mut coverage)?;
     let failed = outcomes.iter().filter(|o| o.defect.is_some()).count();
     let errors = problems.iter().filter(|p| p.severity() == g7_model::Severity::Error);
     let rows = outcomes.iter().map(|o| {

@@ -293,7 +293,9 @@ impl Why<'_> {
             .into_iter()
             .map(|s| (s, self.past.last_change(&[Signal::Step(s)], before)))
             .collect();
-        let enabled = steps.iter().map(|(_, pos)| *pos).max().flatten();
+        // The initial situation precedes what the first scan reads (rule 1).
+        let later = steps.iter().map(|(_, pos)| pos.filter(|pos| !self.is_begin(*pos)));
+        let enabled = later.max().flatten();
         let came = parts.iter().filter(|d| d.last).map(|d| d.since.pos()).max().flatten();
         // A time that is over is later than what happened as the scan began.
         let by_step = !steps.is_empty() && (parts.is_empty() || enabled >= came && enabled.is_some());
@@ -302,7 +304,7 @@ impl Why<'_> {
             causes.push(self.part(d, before, !by_step && d.last, trail));
         }
         for (step, since) in &steps {
-            let last = by_step && *since == enabled;
+            let last = by_step && since.filter(|pos| !self.is_begin(*pos)) == enabled;
             causes.push(match since {
                 Some(since) => self.event(Signal::Step(*step), *since, last, trail),
                 None => self.since_start(Signal::Step(*step), last),
@@ -317,6 +319,12 @@ impl Why<'_> {
             !(known && c.aside && matches!(c.fact, Fact::Step(..)))
         });
         causes
+    }
+
+    /// True for the moment at which a run begins with its initial situation.
+    fn is_begin(&self, pos: Pos) -> bool {
+        let look = self.past.look(pos.scan);
+        look.first && look.stages.get(pos.stage).is_some_and(|s| s.part == Part::Begin)
     }
 
     /// The steps that precede a transition.

@@ -996,6 +996,14 @@ export type TestResult = {
 
 export type TestRow = { name: string; from: number; to: number; plant?: string };
 
+/** Why a test failed. */
+export type TestWhy = {
+  /** Why the names in the condition have their values. */
+  lines: Array<WhyLine>;
+  /** The scans up to the failure; none where inputs alone do not lead there. */
+  run?: Array<ProofScan>;
+};
+
 /** A text. */
 export type Text = { text: string };
 
@@ -1132,6 +1140,8 @@ export interface Requests {
   style: { dark?: boolean };
   /** Runs the tests whose titles contain `name`, or all. */
   test: { file: string; name?: string | null };
+  /** Why a test of this title failed. */
+  test_why: { file: string; name: string };
   /** Answers all questions about the file, as far as the limits go. */
   prove: {
     file: string;
@@ -1279,6 +1289,7 @@ export interface Answers {
   logic_read: Text;
   style: Style;
   test: TestAnswer;
+  test_why: TestWhy;
   prove: ProofReport;
   prove_ways: ProofWays;
   compare: ComparedReport;

@@ -209,6 +209,14 @@ impl File<'_> {
         let chronogram =
             drawn.map(|(run, d)| d.draw(&run.moves, &format!("{claim} {guilt}"))).unwrap_or_default();
         let scans = drawn.map(|(run, d)| d.scans(&run.moves)).unwrap_or_default();
+        let why = drawn.map(|(run, d)| {
+            let guilty = guilt::names(model, &question.claim, run);
+            if guilty.is_empty() {
+                d.why(&run.moves, &trace::names(written))
+            } else {
+                d.why(&run.moves, &guilty)
+            }
+        });
         let time = match verdict {
             Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) => {
                 run.moves.iter().fold(0i64, |sum, m| sum.saturating_add(m.wait))
@@ -231,6 +239,7 @@ impl File<'_> {
             chronogram,
             rule: sarif::rule(&question.claim),
             scans,
+            why: why.unwrap_or_default(),
         })
     }
 }

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use g7_model::{Nanos, Said};
 use g7_verify::{Open, Reason, Verdict, words};
+use g7_why::Cause;
 
 use crate::report::Tally;
 
@@ -61,6 +62,8 @@ pub(crate) struct Answered {
     pub(crate) rule: &'static str,
     /// The scans of the run, each in words.
     pub(crate) scans: Vec<String>,
+    /// Why what the claim names has its value at the end of the run.
+    pub(crate) why: Vec<Cause>,
 }
 
 impl Found {

@@ -32,6 +32,23 @@ pub(super) fn guilt(model: &Model<'_>, claim: &Claim, run: &Run) -> Said {
     }
 }
 
+/// The names of what breaks a claim of every chart, for the question why it is so; none for a claim of the author.
+pub(super) fn names(model: &Model<'_>, claim: &Claim, run: &Run) -> Vec<String> {
+    if claim.is_own() {
+        return Vec::new();
+    }
+    let symbols = &model.compiled.symbols;
+    let blame = blame(model, claim, run);
+    let steps = blame.steps.iter().map(|s| symbols.step_path(*s).to_owned());
+    let transition = |r: &u32| format!("{}.{}", symbols.transition_chart(*r), symbols.transition_text(*r));
+    let transitions = blame.transitions.iter().map(transition);
+    match claim {
+        // Why both cleared, not why the step that they share is no longer active.
+        Claim::NoConflict => transitions.collect(),
+        _ => steps.chain(transitions).collect(),
+    }
+}
+
 fn listed(names: impl Iterator<Item = String>) -> Said {
     let all: Vec<String> = names.collect();
     let more = all.len().saturating_sub(NAMES);

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use super::found::{Answered, Found, LISTED};
 use crate::failure::{Failure, raw};
 use crate::message::{tell, told};
-use crate::style;
+use crate::{reasons, style};
 
 /// The word for an answer.
 pub(super) fn word(verdict: &Verdict) -> Said {
@@ -92,6 +92,7 @@ fn one(out: &mut impl Write, a: &Answered, short: bool) -> Result<(), Failure> {
     if !a.guilt.is_empty() {
         writeln!(out, "  {}", told(&a.guilt))?;
     }
+    reasons::lines(out, &a.why)?;
     help(out, &a.help)
 }
 
@@ -193,6 +194,9 @@ fn row(a: &Answered) -> Value {
     }
     if !a.guilt.is_empty() {
         row["guilt"] = json!(&*a.guilt);
+    }
+    if !a.why.is_empty() {
+        row["why"] = a.why.iter().map(reasons::json).collect();
     }
     if let Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) = &a.verdict {
         row["run"] = run.moves.iter().map(|m| json!({ "inputs": m.inputs, "wait_ns": m.wait })).collect();

@@ -2,8 +2,10 @@
 
 use g7_host::{Chronogram, Recording, Runner, Signal, Style};
 use g7_model::{Nanos, ProfileName, Said, say};
+use g7_rig::testing::causes;
 use g7_rig::{Bench, Role, Source};
 use g7_verify::Move;
+use g7_why::Cause;
 
 use crate::failure::{Failure, raw};
 use crate::message::told;
@@ -38,7 +40,7 @@ impl Drawer {
     pub(super) fn draw(&self, moves: &[Move], claim: &str) -> String {
         let recording = self.record(moves);
         let mut lanes = self.bench.lanes(&recording);
-        let words: Vec<&str> = claim.split(|c: char| !c.is_alphanumeric() && !"_.".contains(c)).collect();
+        let words = names(claim);
         let named = |i: &usize| recording.signals().get(*i).is_some_and(|s| words.contains(&&*s.name));
         let all = || 0..recording.signals().len();
         for i in all().filter(named).chain(all().filter(|i| is_on(&recording, *i))) {
@@ -51,6 +53,13 @@ impl Drawer {
             |i: &usize| recording.signals().get(*i).and_then(|s| GROUPS.iter().position(|g| *g == s.group));
         lanes.sort_by_key(group);
         self.chronogram(&recording, lanes, moves.len())
+    }
+
+    /// Why the first of these names have their values at the end of a run.
+    pub(super) fn why(&self, moves: &[Move], names: &[impl AsRef<str>]) -> Vec<Cause> {
+        let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+        let runner = repeat(self.bench.runner(0).with_tape(), moves, |_| {});
+        causes(&self.bench, &runner, &names)
     }
 
     /// The two runs of a comparison in one chronogram. A signal that takes the same course in both
@@ -88,7 +97,7 @@ impl Drawer {
     /// The fault that ends a run, in words.
     pub(super) fn fault(&self, moves: &[Move]) -> Option<Said> {
         let mut fault = None;
-        repeat(&self.bench, moves, |runner| {
+        repeat(self.bench.runner(0), moves, |runner| {
             fault = runner.halt().map(|halt| self.bench.halt(runner, halt));
         });
         fault
@@ -97,7 +106,7 @@ impl Drawer {
     fn record(&self, moves: &[Move]) -> Recording {
         let bench = &self.bench;
         let mut recording = Recording::new(bench.signals());
-        repeat(bench, moves, |runner| {
+        repeat(bench.runner(0), moves, |runner| {
             recording.sample(Nanos::new(runner.state().now()), bench.sample(runner));
         });
         recording
@@ -135,9 +144,13 @@ fn numbered(s: &Signal, chart: u8) -> Signal {
     Signal { name: format!("{chart}: {}", s.name), ..s.clone() }
 }
 
+/// The words of a claim that may be names.
+pub(super) fn names(claim: &str) -> Vec<&str> {
+    claim.split(|c: char| !c.is_alphanumeric() && !"_.".contains(c)).filter(|word| !word.is_empty()).collect()
+}
+
 /// Repeats a run up to a fault; `see` is shown the runner behind each scan.
-fn repeat(bench: &Bench, moves: &[Move], mut see: impl FnMut(&Runner)) {
-    let mut runner = bench.runner(0);
+fn repeat(mut runner: Runner, moves: &[Move], mut see: impl FnMut(&Runner)) -> Runner {
     for m in moves {
         for (index, value) in (0u32..).zip(&m.inputs) {
             runner.set_input(index, *value);
@@ -148,12 +161,13 @@ fn repeat(bench: &Bench, moves: &[Move], mut see: impl FnMut(&Runner)) {
             break;
         }
     }
+    runner
 }
 
 /// The scans of a run in words: the time, the inputs that change, the situation behind it.
 fn in_words(bench: &Bench, moves: &[Move]) -> Vec<String> {
     let (mut before, mut found) = (Vec::new(), Vec::new());
-    repeat(bench, moves, |runner| {
+    repeat(bench.runner(0), moves, |runner| {
         let inputs = bench.items.iter().filter(|i| matches!(i.role, Role::Input(_)));
         let all: Vec<String> =
             inputs.map(|i| format!("{} = {}", i.name, i.show(&bench.value_in(runner.state(), i)))).collect();

@@ -3,7 +3,7 @@
 mod output;
 mod work;
 
-pub(crate) use output::{cause_json, defect_json, escape};
+pub(crate) use output::{defect_json, escape};
 
 use std::io::Write;
 

@@ -3,13 +3,12 @@
 use std::io::{self, Write};
 
 use g7_model::{Nanos, say};
-use g7_why::Cause;
 use serde_json::{Value, json};
 
 use crate::failure::raw;
 use crate::message::told;
 use crate::tongue::language;
-use crate::{report, style};
+use crate::{reasons, report, style};
 use g7_rig::testing::{Coverage, Defect, Outcome, Unproved};
 
 /// Prints one line for each test.
@@ -43,28 +42,13 @@ pub(super) fn failures(out: &mut dyn Write, outcomes: &[Outcome]) -> io::Result<
             writeln!(out, "  {}", told(&say!("got {}", raw(got.join(", ")))))?;
         }
         writeln!(out, "  {}", told(&say!("situation {}", raw(&d.situation))))?;
-        reasons(out, &d.why)?;
+        reasons::lines(out, &d.why)?;
         if !d.chronogram.is_empty() {
             writeln!(out)?;
             for line in d.chronogram.lines() {
                 writeln!(out, "  {line}")?;
             }
         }
-    }
-    Ok(())
-}
-
-/// Most lines of the reasons of a failure.
-const REASONS: usize = 6;
-
-/// Prints the first causes of the values in a condition that failed.
-fn reasons(out: &mut dyn Write, why: &[Cause]) -> io::Result<()> {
-    let lines: Vec<(usize, &Cause)> = why.iter().flat_map(Cause::lines).filter(|(_, c)| !c.aside).collect();
-    for (depth, line) in lines.iter().take(REASONS) {
-        writeln!(out, "  {}{}{}", "  ".repeat(*depth), if *depth > 0 { "← " } else { "" }, told(&line.said))?;
-    }
-    if lines.len() > REASONS {
-        writeln!(out, "  {}", told(&say!("… and {} more causes", lines.len() - REASONS)))?;
     }
     Ok(())
 }
@@ -157,15 +141,7 @@ pub(crate) fn defect_json(d: &Defect, what: &str) -> Value {
     json!({
         "what": what, "expected": d.expected, "got": got, "place": d.place, "origin": d.origin,
         "time_seconds": d.time.as_seconds(), "situation": d.situation, "chronogram": d.chronogram,
-        "why": d.why.iter().map(cause_json).collect::<Vec<_>>(),
-    })
-}
-
-/// A sentence with its causes, without places.
-pub(crate) fn cause_json(cause: &Cause) -> Value {
-    json!({
-        "what": told(&cause.said), "kind": cause.fact.word(), "time_seconds": cause.now.as_seconds(),
-        "aside": cause.aside, "causes": cause.causes.iter().map(cause_json).collect::<Vec<_>>(),
+        "why": d.why.iter().map(reasons::json).collect::<Vec<_>>(),
     })
 }
 

@@ -9,10 +9,10 @@ use serde_json::Value;
 
 use crate::failure::Failure;
 use crate::message::told;
+use crate::reasons;
 use crate::report;
 use crate::sources::Source;
 use crate::style;
-use crate::testing::cause_json;
 
 /// Most places that are marked.
 const PLACES: usize = 12;
@@ -63,7 +63,7 @@ pub(super) fn json(source: &Source, cause: &Cause) -> Result<(), Failure> {
 
 /// A sentence with its causes as JSON.
 fn value(source: &Source, cause: &Cause) -> Value {
-    let mut value = cause_json(cause);
+    let mut value = reasons::json(cause);
     value["places"] = cause.places.iter().map(|at| report::place(source, *at)).collect();
     value["causes"] = cause.causes.iter().map(|c| self::value(source, c)).collect();
     value

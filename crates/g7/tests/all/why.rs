@@ -136,3 +136,34 @@ chart G {
     let lines = ran.out.lines().filter(|l| l.contains("became") || l.contains("← ")).count();
     assert_eq!(lines, 6, "{}", ran.out);
 }
+
+/// The claim of the author is asked by its names, one of every chart by the steps and transitions that break it.
+#[test]
+fn a_refuted_claim_tells_why() {
+    let folder = Folder::with(&format!("{PINGPONG}prove never m\n"));
+    let ran = folder.g7(&["prove", "chart.g7"]);
+    let chain =
+        ["`m` became TRUE at ", "← the action N of step `2` acts on it", "← step `2` became active at "];
+    let chain =
+        chain.into_iter().chain(["← the transition `1 -> 2` cleared at ", "← the input `a` became TRUE"]);
+    let mut lines = ran.is(1).out.lines();
+    for part in chain {
+        assert!(lines.any(|line| line.contains(part)), "{part}:\n{}", ran.out);
+    }
+    let ran = folder.g7(&["prove", "chart.g7", "--format", "json"]);
+    let all: serde_json::Value = serde_json::from_str(&ran.is(1).out).expect("JSON");
+    let refuted = all["answers"].as_array().expect("a list").iter().find(|a| a["verdict"] == "refuted");
+    assert_eq!(refuted.expect("one is refuted")["why"][0]["causes"][0]["kind"], "action");
+
+    let both = PINGPONG.replace("2 -> 1", "step 3\n  1 -> 3 when a\n  3 -> 1 when not a\n  2 -> 1");
+    let ran = Folder::with(&both).g7(&["prove", "chart.g7"]);
+    let told = [
+        "both are clearable at once: ",
+        "  the transition `1 -> 2` cleared at ",
+        "← the input `a` became TRUE at ",
+    ];
+    let mut lines = ran.is(1).out.lines();
+    for part in told {
+        assert!(lines.any(|line| line.contains(part)), "{part}:\n{}", ran.out);
+    }
+}

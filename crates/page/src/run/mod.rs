@@ -33,5 +33,5 @@ pub(crate) use scans::Scan;
 pub use sent::Show;
 pub(crate) use start::{Started, start};
 pub(crate) use swap::Swapped;
-pub(crate) use why::{Asked, Because, why};
+pub(crate) use why::{Asked, Because, WhyLine, lines, why};
 pub(crate) use wish::{Start, profile};

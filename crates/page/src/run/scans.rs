@@ -1,5 +1,6 @@
 //! Runs as the page keeps and sends them: for each scan the inputs that change.
 
+use g7_rig::testing::Defect;
 use g7_verify::Move;
 use serde::{Deserialize, Serialize};
 
@@ -30,6 +31,13 @@ impl Scan {
             before = &m.inputs;
         }
         scans
+    }
+
+    /// The scans up to the failure of a test; none where inputs alone do not lead there.
+    pub(crate) fn up_to(defect: &Defect) -> Option<Vec<Scan>> {
+        let moves = defect.inputs.iter().map(|inputs| Move { inputs: inputs.clone(), wait: 0 });
+        let moves: Vec<Move> = moves.collect();
+        (!moves.is_empty()).then(|| Scan::list(&moves))
     }
 
     /// The same with all inputs of a program with so many input words.

@@ -48,7 +48,7 @@ pub(crate) struct Because {
 /// A sentence of an answer.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
-struct WhyLine {
+pub(crate) struct WhyLine {
     /// How many effects stand above it, one above the other.
     depth: usize,
     said: String,
@@ -91,9 +91,12 @@ pub(crate) fn why(asked: Asked, language: Language) -> Result<Because, Said> {
         None => why.span().map_or(Nanos::ZERO, |(_, end)| end),
     };
     let cause = why.ask(about, now).map_err(|e| e.said())?;
-    let document = file.source.whole();
-    let lines = cause.lines().into_iter().map(|(depth, cause)| line(depth, cause, document, language));
-    Ok(Because { lines: lines.collect() })
+    Ok(Because { lines: lines(&cause, file.source.whole(), language) })
+}
+
+/// The sentences of an answer, in the order in which they are read.
+pub(crate) fn lines(cause: &Cause, document: &Document, language: Language) -> Vec<WhyLine> {
+    cause.lines().into_iter().map(|(depth, cause)| line(depth, cause, document, language)).collect()
 }
 
 /// The question about a symbol of the drawing, by its id.

@@ -299,6 +299,15 @@ fn tests_are_run_and_a_failure_has_its_place() {
     assert_eq!(failure["message"], "expected: q");
     let one = page.ok(json!({ "do": "test", "file": "a.g7", "name": "comes" }));
     assert_eq!(one["tests"].as_array().map(Vec::len), Some(1));
+
+    // Why it failed, with the run up to there; a test that passes has no reasons.
+    let why = page.ok(json!({ "do": "test_why", "file": "a.g7", "name": "fails" }));
+    assert_eq!(why["lines"][0]["said"], "`q` is FALSE since the start");
+    assert_eq!(why["run"].as_array().map(Vec::len), Some(1), "{why}");
+    let passed = page.ok(json!({ "do": "test_why", "file": "a.g7", "name": "comes on" }));
+    assert_eq!(passed, json!({ "lines": [] }));
+    let refused = page.no(json!({ "do": "test_why", "file": "b.g7", "name": "fails" }));
+    assert!(refused.contains("b.g7"), "{refused}");
 }
 
 #[test]

@@ -66,7 +66,5 @@ export const exercise = {
   'exercise.ok': ['passes', 'réussit', 'passa'],
   'exercise.at': ['At {time}: {why}.', 'À {time} : {why}.', 'Aos {time}: {why}.'],
   'exercise.is': ['`{name}` is {value}', '`{name}` vaut {value}', '`{name}` é {value}'],
-  'exercise.play': ['Play to this moment', 'Jouer jusqu’à ce moment', 'Mostrar até este momento'],
-  'exercise.playing': ['Run of the exercise: {claim}', 'Exécution de l’exercice : {claim}', 'Execução do exercício: {claim}'],
   'exercise.show': ['Show in the text', 'Montrer dans le texte', 'Mostrar no texto'],
 } as const satisfies Words;

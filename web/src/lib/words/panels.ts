@@ -47,6 +47,12 @@ export const panels = {
   'tests.with': ['with {name}', 'avec {name}', 'com {name}'],
   'tests.time': ['{time}, {scans} scans', '{time}, {scans} cycles', '{time}, {scans} ciclos'],
   'tests.at': ['At {time}, situation {situation}', 'À {time}, situation {situation}', 'Em {time}, situação {situation}'],
+  'tests.noReason': ['The condition names nothing that the run can be asked about.', 'La condition ne nomme rien sur quoi l’exécution puisse être interrogée.', 'A condição não nomeia nada sobre que a execução possa ser interrogada.'],
+  'tests.noRun': [
+    'This test forces, writes or restarts, so inputs alone do not lead there: it is told and not played.',
+    'Cet essai force, écrit ou redémarre : les entrées seules n’y mènent pas ; il est expliqué, pas joué.',
+    'Este teste força, escreve ou reinicia: só com as entradas não se chega lá; é explicado, não mostrado.',
+  ],
   'tests.coverage': ['Reached by the tests', 'Atteint par les essais', 'Alcançado pelos testes'],
   'tests.branches': ['Branches', 'Branches', 'Ramos'],
   'tests.missed': ['Not reached:', 'Non atteint :', 'Não alcançado:'],

@@ -28,6 +28,8 @@ export const prove = {
   'prove.noneShown': ['No answer is of this kind.', 'Aucune réponse de ce genre.', 'Nenhuma resposta deste género.'],
   'prove.noOwn': ['The file asks nothing itself yet. Write in the text, for instance: prove never X1 and X2', 'Le fichier ne demande encore rien lui-même. Écrivez dans le texte, par exemple : prove never X1 and X2', 'O ficheiro ainda não pergunta nada. Escreva no texto, por exemplo: prove never X1 and X2'],
   'prove.play': ['Play the run on the chart', 'Jouer l’exécution sur le grafcet', 'Mostrar a execução no grafcet'],
+  'prove.toMoment': ['Play to this moment', 'Jouer jusqu’à ce moment', 'Mostrar até este momento'],
+  'prove.toFailure': ['Run up to the failure: {claim}', 'Exécution jusqu’à l’échec : {claim}', 'Execução até à falha: {claim}'],
   'prove.playing': ['Run of the proof: {claim}', 'Exécution de la preuve : {claim}', 'Execução da prova: {claim}'],
   'prove.shown': ['shown on the chart', 'montré sur le grafcet', 'mostrado no grafcet'],
   'prove.back': ['End the shown run', 'Quitter l’exécution montrée', 'Sair da execução mostrada'],
