@@ -25,6 +25,8 @@ DEBUG := $(abspath $(or $(CARGO_TARGET_DIR),target))/debug
 WORKSPACE := --workspace --features g7/s7,g7/gpio,g7/opcua,g7-tests/types
 BUILD := cargo build --quiet $(WORKSPACE) --bin g7
 TESTS := cargo test $(WORKSPACE) --exclude g7-benches --quiet --lib --bins --tests
+# They only compute, and have no limits of time (tests/Cargo.toml).
+COMPUTED := cargo test $(WORKSPACE) --exclude g7-benches --quiet --test laws --test compiled
 CLIPPY := cargo clippy $(WORKSPACE) --all-targets --quiet -- --deny warnings
 STORIES = cd web && npm run --silent check && G7=$(DEBUG)/g7 npm test --silent | tee $(TALLY)/page.log
 PYTHON := $(abspath $(or $(CARGO_TARGET_DIR),target))/python
@@ -79,9 +81,9 @@ test: tally-anew web $(PYTHON)/bin/pymodbus.simulator $(NODE)/node_modules/.pack
 	@$(call debian,chromium,chromium)
 	@$(call debian,mosquitto_sub,mosquitto mosquitto-clients) || echo "mosquitto cannot be installed: its tests are skipped"
 	$(BUILD)
-	@echo "the stories of the page; meanwhile the tests of the crates are compiled"
-	@{ nice $(CLIPPY) && nice $(TESTS) --no-run; } >$(TALLY)/compiled 2>&1 & compiled=$$!; \
-		told=0; { $(STORIES); } || told=$$?; wait $$compiled || { cat $(TALLY)/compiled; exit 1; }; exit $$told
+	@echo "the stories of the page; meanwhile the tests of the crates are compiled, and those that only compute run"
+	@{ nice $(CLIPPY) && nice $(TESTS) --no-run && nice $(COMPUTED); } >$(TALLY)/computed.log 2>&1 & computed=$$!; \
+		told=0; { $(STORIES); } || told=$$?; wait $$computed || { cat $(TALLY)/computed.log; exit 1; }; exit $$told
 	{ $(TESTS) && cargo test --quiet --doc --package g7-engine; } 2>&1 | tee $(TALLY)/crates.log
 	@test -f $(EXTENDED) || printf 'packages of the extension missing\teditors/vscode\n' >>$(G7_SKIPS)
 	@test ! -f $(EXTENDED) || { cd $(EXTENSION) && npm run --silent check && npm run --silent build && \

@@ -15,7 +15,7 @@
 //!
 //! # Invariants
 //!
-//! - It does what the engine does; `tests/tests/foreign/codegen.rs` runs both beside each other.
+//! - It does what the engine does; `tests/tests/compiled/main.rs` runs both beside each other.
 //! - No heap, no library but `libm`, no recursion.
 #![no_std]
 #![forbid(unsafe_code)]

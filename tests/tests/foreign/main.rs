@@ -1,6 +1,5 @@
 //! The tests beside other programs. They are one program, because linking one for each file would take longer than compiling them.
 
-mod codegen;
 mod families;
 mod fmu;
 mod interop;

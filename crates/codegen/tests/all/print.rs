@@ -1,5 +1,5 @@
 //! Printed code: names and texts of the chart, refused constructs, and a sketch that compiles. What linters say is
-//! tested in `lint.rs`; that the code does what the engine does in `tests/tests/foreign/codegen.rs`.
+//! tested in `lint.rs`; that the code does what the engine does in `tests/tests/compiled/main.rs`.
 #![allow(clippy::disallowed_methods, reason = "the tests start a compiler")]
 
 use std::process::Command;

@@ -1,9 +1,11 @@
 //! Generated C and Rust behave like the engine, scan by scan: situation, step times, outputs,
 //! variables, faults; on every conformance case and on random charts.
 //!
-//! `G7_SCANS=100000` sets the number of random scans for each profile, and runs every case with
-//! every compiler in both styles; otherwise some combinations are left out. The folder with the
-//! code is kept if `G7_KEEP` is set.
+//! `G7_SCANS=100000 cargo test -p g7-tests --test compiled` sets the number of random scans for each profile, and
+//! runs every case with every compiler in both styles; otherwise some combinations are left out. The folder with
+//! the code is kept if `G7_KEEP` is set.
+#![allow(missing_docs, reason = "a test")]
+
 use g7_codegen::{Clock, Language, Room, Style};
 use g7_model::ProfileName;
 use g7_tests::generated::cases::{self, Folder};
