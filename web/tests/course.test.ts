@@ -143,6 +143,7 @@ test('the laboratory is done from its chapter: a template is not done yet, a sol
     await chapter(page, titleOf('14-bead-sorter', language)).click();
     const tasks = article(page).locator('li .task');
     const folders = readdirSync(join(ROOT, 'exercises')).filter((name) => name.startsWith('bead-sorter')).sort();
+    await tasks.first().waitFor();
     assert.equal(await tasks.count(), folders.length, 'the whole laboratory');
     const rest = tasks.nth(folders.indexOf('bead-sorter-2-rest'));
     await rest.getByRole('button').click();
