@@ -19,12 +19,14 @@ const ONE_HAND = readFileSync(join(PRESS, 'wrong/one-hand.g7'), 'utf8');
 const LONG = 120_000;
 const FILE = 'loop.g7';
 const LOOP = 'chart G1 {\n  initial step 0\n}\n';
+/** A picture of the folder with the name of one of an exercise. */
+const OTHER = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><g data-g7="other"/></svg>';
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ [FILE]: LOOP });
+  site = await playground({ [FILE]: LOOP, 'press.svg': OTHER });
   b = await browser();
 });
 
@@ -146,6 +148,41 @@ test('a right solution passes, and that stays when the page is loaded again, wit
   await page.getByRole('button', { name: /A press with two-hand control/ }).filter({ hasText: 'done' }).waitFor();
   await page.getByRole('button', { name: /traffic light/ }).filter({ hasText: 'not begun' }).waitFor();
   await done(page);
+});
+
+test('a plant has the picture of its exercise, whatever the folder has under that name, and after loading again', async () => {
+  const page = await opened();
+  const seen = async () => {
+    await page.getByRole('tab', { name: 'Operate' }).click();
+    await page.getByRole('button', { name: 'Run', exact: true }).first().click();
+    await page.locator('.picture svg [data-g7="slide"]').waitFor({ state: 'attached' });
+    assert.equal(await page.locator('.picture svg [data-g7="other"]').count(), 0);
+  };
+  await seen();
+  // What the picture offers is operated there.
+  await page.locator('.picture svg').getByRole('button', { name: /\(left\)/ }).click();
+  await page.locator('.picture svg [aria-pressed="true"]').filter({ hasText: 'left' }).waitFor();
+  await page.reload();
+  await page.getByRole('button', { name: 'Gallery' }).click();
+  await page.getByRole('button', { name: /A press with two-hand control/ }).click();
+  await page.locator('.sheet [data-id="Press/s/Ready"]').waitFor({ state: 'attached' });
+  await seen();
+  await done(page);
+});
+
+test('each picture of an exercise has what its plant moves, and shows nothing else than the signals of the exercise', () => {
+  const all = JSON.parse(readFileSync(join(DIST, 'exercises.json'), 'utf8')) as { id: string; pictures: Record<string, string>; given: { template: string } | null }[];
+  for (const { id, pictures, given } of all) {
+    assert.ok(given, id);
+    const view = /\n  view '(.*)' \{\n([^}]*)\}/.exec(given.template);
+    assert.ok(view, `${id} has a picture`);
+    const [, name = '', bound = ''] = view;
+    const picture = pictures[name] ?? '';
+    const elements = new Set([...picture.matchAll(/data-g7="(\w+)"/g)].map(([, element]) => element));
+    const moved = new Set([...bound.matchAll(/^ *(\w+)\.\w+ := /gm)].map(([, element]) => element));
+    assert.deepEqual([...moved].sort(), [...elements].sort(), `${id}: ${name}`);
+    for (const [, signal = ''] of picture.matchAll(/data-g7-(?:press|click)="(\w+)"/g)) assert.match(given.template, new RegExp(`\\b${signal}\\b`), `${id}: ${signal}`);
+  }
 });
 
 test('the template comes back after a question, and the text of before can be had back', async () => {
