@@ -35,6 +35,9 @@ for (const { name: id } of entries(folder).filter((entry) => entry.isDirectory()
   const files = names.filter((name) => /\.(g7|md)$/.test(name)).map((name) => ({ file: name, text: text(name) }));
   const pictures = Object.fromEntries(names.filter((name) => name.endsWith('.svg')).map((name) => [name, text(name)]));
   const packed = ask({ do: 'exercise_pack', folder: join(folder, id), files });
+  // A plant without its picture still runs, so the student gets the exercise.
+  const absent = packed.given ? ask({ do: 'open', file: `${id}.g7`, text: packed.given.template }).pictures.filter((name) => !(name in pictures)) : [];
+  packed.faults.push(...absent.map((name) => ({ place: join(folder, id, 'template.g7'), what: `the picture ${name} is not in the folder` })));
   // The page tells them as well, and goes on with all others.
   for (const { place, what } of packed.faults) console.error(`${place}: error: ${what}`);
   found.push({ id, pictures, ...packed });

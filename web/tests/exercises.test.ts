@@ -261,16 +261,18 @@ test('a damaged hidden part is a sentence, and the page goes on', async () => {
 test('a folder with a mistake is told with its place when the page is built, and the others are made', () => {
   const folder = mkdtempSync(join(tmpdir(), 'g7-exercises-'));
   try {
-    for (const id of ['half', 'press']) cpSync(PRESS, join(folder, id), { recursive: true });
+    for (const id of ['bare', 'half', 'press']) cpSync(PRESS, join(folder, id), { recursive: true });
+    rmSync(join(folder, 'bare/press.svg'));
     rmSync(join(folder, 'half/model.g7'));
     writeFileSync(join(folder, 'half/hints.fr.md'), '## Un seul\n');
     const out = join(folder, 'out.json');
     const ran = spawnSync(process.execPath, [join(HERE, 'exercises.mjs'), join(DIST, 'g7-whole.wasm'), folder, out], { encoding: 'utf8' });
     assert.equal(ran.status, 0, ran.stderr);
     assert.match(ran.stderr, /half\/model\.g7: error: an exercise has a file with this name: the model solution/);
+    assert.match(ran.stderr, /bare\/template\.g7: error: the picture press\.svg is not in the folder/);
     assert.match(ran.stderr, /half\/hints\.fr\.md: error: hints here: 1; in English: 3/);
     const made = JSON.parse(readFileSync(out, 'utf8')) as { id: string; given: { template: string } | null; faults: object[]; texts: { title: string }[] }[];
-    assert.deepEqual(made.map((one) => [one.id, one.given !== null, one.faults.length]), [['press', true, 0], ['half', false, 2]]);
+    assert.deepEqual(made.map((one) => [one.id, one.given !== null, one.faults.length]), [['press', true, 0], ['bare', true, 1], ['half', false, 2]]);
     assert.deepEqual(made[0]?.texts.map((one) => one.title), ['A press with two-hand control', 'Une presse à commande bimanuelle', 'Uma prensa com comando bimanual']);
     assert.equal(made[0]?.given?.template, readFileSync(join(PRESS, 'template.g7'), 'utf8'));
   } finally {
