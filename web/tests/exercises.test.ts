@@ -159,7 +159,7 @@ test('a plant has the picture of its exercise, whatever the folder has under tha
     assert.equal(await page.locator('.picture svg [data-g7="other"]').count(), 0);
   };
   await seen();
-  // What the picture offers is operated there.
+  // A button of the picture works.
   await page.locator('.picture svg').getByRole('button', { name: /\(left\)/ }).click();
   await page.locator('.picture svg [aria-pressed="true"]').filter({ hasText: 'left' }).waitFor();
   await page.reload();
