@@ -8,6 +8,8 @@ import type { Page } from 'playwright-core';
 import { axe, browser, done, drawn, openWith, playground, press, until, type Opened, type Site } from './lib';
 import { lesson } from '../src/course/lesson';
 import { course as words } from '../src/lib/words/course';
+import { exercise as told } from '../src/lib/words/exercise';
+import { run } from '../src/lib/words/run';
 
 const ROOT = join(import.meta.dirname, '../..');
 const ENDINGS = { en: 'text.md', fr: 'text.fr.md', pt: 'text.pt.md' } as const;
@@ -42,7 +44,7 @@ test('each chapter says the same in three languages, and names only what there i
       assert.equal(blocks.filter((k) => k.is === 'question').length, 1, `${id} has one question, ${language}`);
       return blocks.map((k) => {
         if (k.is === 'chart') return `chart ${k.href}`;
-        if (k.is === 'exercise') return `exercise ${k.name}`;
+        if (k.is === 'exercises') return `exercises ${k.list.map((one) => one.name).join(' ')}`;
         if (k.is === 'question') return `question ${k.choices.map((c) => (c.right ? 'right' : c.why.length > 0 ? 'wrong' : 'no reason')).join(' ')}`;
         return k.token.type === 'list' ? `list of ${(k.token as unknown as { items: unknown[] }).items.length}` : k.token.type;
       });
@@ -55,9 +57,10 @@ test('each chapter says the same in three languages, and names only what there i
     assert.ok(!question.includes('no reason'), `${id}: ${question}`);
     assert.ok(rows.some((row) => row.startsWith('chart')), `${id} shows a chart`);
     for (const row of rows) {
-      const [kind, name = ''] = row.split(' ');
+      const [kind, ...names] = row.split(' ');
+      const [name = ''] = names;
       if (kind === 'chart') assert.ok(existsSync(join(ROOT, 'course', id, name)), `${id}: ${name}`);
-      if (kind === 'exercise') assert.ok(existsSync(join(ROOT, 'exercises', name, 'statement.md')), `${id}: ${name}`);
+      if (kind === 'exercises') for (const one of names) assert.ok(existsSync(join(ROOT, 'exercises', one, 'statement.md')), `${id}: ${one}`);
     }
   }
 });
@@ -65,8 +68,8 @@ test('each chapter says the same in three languages, and names only what there i
 const chapter = (page: Page, title: string) => page.getByRole('button', { name: new RegExp(`^\\d+ ${title}`) });
 const article = (page: Page) => page.locator('article');
 
-async function start(language: keyof typeof AT, size?: { width: number; height: number }): Promise<Opened> {
-  const page = await openWith(b, site, '', { language }, size);
+async function start(language: keyof typeof AT, size?: { width: number; height: number }, prefs: object = {}): Promise<Opened> {
+  const page = await openWith(b, site, '', { language, ...prefs }, size);
   await page.getByRole('heading', { name: words['course.title'][AT[language]], exact: true }).waitFor();
   return page;
 }
@@ -131,6 +134,43 @@ test('a chart that the reader changed is shown again as it is, and a plant has i
   await page.getByRole('button', { name: 'Course', exact: true }).click();
   await article(page).getByRole('heading', { name: titleOf('07-times', 'en') }).waitFor();
   await done(page);
+});
+
+test('the laboratory is done from its chapter: a template is not done yet, a solution passes, and the unit has its picture', async () => {
+  const model = readFileSync(join(ROOT, 'exercises/bead-sorter-2-rest/model.g7'), 'utf8');
+  for (const language of ['en', 'fr'] as const) {
+    const page = await start(language, { width: 1600, height: 900 }, { view: 'both' });
+    await chapter(page, titleOf('14-bead-sorter', language)).click();
+    const tasks = article(page).locator('li .task');
+    const folders = readdirSync(join(ROOT, 'exercises')).filter((name) => name.startsWith('bead-sorter')).sort();
+    await tasks.first().waitFor();
+    assert.equal(await tasks.count(), folders.length, 'the whole laboratory');
+    const rest = tasks.nth(folders.indexOf('bead-sorter-2-rest'));
+    await rest.getByRole('button').click();
+    const panel = page.locator('.exercise');
+    const sorter = page.locator('.sheet [data-id="Sorter/s/Sequenced"]');
+    await sorter.waitFor({ state: 'attached' });
+    const check = async (said: readonly string[]) => {
+      await panel.getByRole('button', { name: told['exercise.check'][AT[language]] }).click();
+      await panel.locator('.result').filter({ hasText: (said[AT[language]] ?? '').split(/[.:]/)[0] }).waitFor({ timeout: 120_000 });
+    };
+    await check(told['exercise.failed']);
+    await rest.getByText(told['exercise.begun'][AT[language]]).waitFor();
+    await page.locator('.cm-content').click();
+    await page.keyboard.press('Control+a');
+    await page.keyboard.insertText(model);
+    await sorter.waitFor({ state: 'attached' });
+    await check(told['exercise.passed']);
+    await rest.getByText(told['exercise.done'][AT[language]]).waitFor();
+    // The model has no plant; that of the template comes back with it.
+    await panel.getByRole('button', { name: told['exercise.again'][AT[language]] }).click();
+    await panel.getByRole('button', { name: told['exercise.reallyAgain'][AT[language]] }).click();
+    await page.getByRole('tab', { name: run['run.panel'][AT[language]] }).click();
+    await page.getByRole('button', { name: run['run.play'][AT[language]], exact: true }).first().click();
+    await page.locator('.picture svg [data-g7="unit"]').waitFor({ state: 'attached' });
+    assert.deepEqual(await axe(page), [], language);
+    await done(page);
+  }
 });
 
 test('on a telephone the text and the chart take turns', async () => {

@@ -19,12 +19,14 @@ const ONE_HAND = readFileSync(join(PRESS, 'wrong/one-hand.g7'), 'utf8');
 const LONG = 120_000;
 const FILE = 'loop.g7';
 const LOOP = 'chart G1 {\n  initial step 0\n}\n';
+/** A picture of the folder with the name of one of an exercise. */
+const OTHER = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 9 9"><g data-g7="other"/></svg>';
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ [FILE]: LOOP });
+  site = await playground({ [FILE]: LOOP, 'press.svg': OTHER });
   b = await browser();
 });
 
@@ -148,6 +150,41 @@ test('a right solution passes, and that stays when the page is loaded again, wit
   await done(page);
 });
 
+test('a plant has the picture of its exercise, whatever the folder has under that name, and after loading again', async () => {
+  const page = await opened();
+  const seen = async () => {
+    await page.getByRole('tab', { name: 'Operate' }).click();
+    await page.getByRole('button', { name: 'Run', exact: true }).first().click();
+    await page.locator('.picture svg [data-g7="slide"]').waitFor({ state: 'attached' });
+    assert.equal(await page.locator('.picture svg [data-g7="other"]').count(), 0);
+  };
+  await seen();
+  // A button of the picture works.
+  await page.locator('.picture svg').getByRole('button', { name: /\(left\)/ }).click();
+  await page.locator('.picture svg [aria-pressed="true"]').filter({ hasText: 'left' }).waitFor();
+  await page.reload();
+  await page.getByRole('button', { name: 'Gallery' }).click();
+  await page.getByRole('button', { name: /A press with two-hand control/ }).click();
+  await page.locator('.sheet [data-id="Press/s/Ready"]').waitFor({ state: 'attached' });
+  await seen();
+  await done(page);
+});
+
+test('each picture of an exercise has what its plant moves, and shows nothing else than the signals of the exercise', () => {
+  const all = JSON.parse(readFileSync(join(DIST, 'exercises.json'), 'utf8')) as { id: string; pictures: Record<string, string>; given: { template: string } | null }[];
+  for (const { id, pictures, given } of all) {
+    assert.ok(given, id);
+    const view = /\n  view '(.*)' \{\n([^}]*)\}/.exec(given.template);
+    assert.ok(view, `${id} has a picture`);
+    const [, name = '', bound = ''] = view;
+    const picture = pictures[name] ?? '';
+    const elements = new Set([...picture.matchAll(/data-g7="(\w+)"/g)].map(([, element]) => element));
+    const moved = new Set([...bound.matchAll(/^ *(\w+)\.\w+ := /gm)].map(([, element]) => element));
+    assert.deepEqual([...moved].sort(), [...elements].sort(), `${id}: ${name}`);
+    for (const [, signal = ''] of picture.matchAll(/data-g7-(?:press|click)="(\w+)"/g)) assert.match(given.template, new RegExp(`\\b${signal}\\b`), `${id}: ${signal}`);
+  }
+});
+
 test('the template comes back after a question, and the text of before can be had back', async () => {
   const page = await opened();
   await write(page, RIGHT, 'LetGo');
@@ -224,16 +261,18 @@ test('a damaged hidden part is a sentence, and the page goes on', async () => {
 test('a folder with a mistake is told with its place when the page is built, and the others are made', () => {
   const folder = mkdtempSync(join(tmpdir(), 'g7-exercises-'));
   try {
-    for (const id of ['half', 'press']) cpSync(PRESS, join(folder, id), { recursive: true });
+    for (const id of ['bare', 'half', 'press']) cpSync(PRESS, join(folder, id), { recursive: true });
+    rmSync(join(folder, 'bare/press.svg'));
     rmSync(join(folder, 'half/model.g7'));
     writeFileSync(join(folder, 'half/hints.fr.md'), '## Un seul\n');
     const out = join(folder, 'out.json');
     const ran = spawnSync(process.execPath, [join(HERE, 'exercises.mjs'), join(DIST, 'g7-whole.wasm'), folder, out], { encoding: 'utf8' });
     assert.equal(ran.status, 0, ran.stderr);
     assert.match(ran.stderr, /half\/model\.g7: error: an exercise has a file with this name: the model solution/);
+    assert.match(ran.stderr, /bare\/template\.g7: error: the picture press\.svg is not in the folder/);
     assert.match(ran.stderr, /half\/hints\.fr\.md: error: hints here: 1; in English: 3/);
     const made = JSON.parse(readFileSync(out, 'utf8')) as { id: string; given: { template: string } | null; faults: object[]; texts: { title: string }[] }[];
-    assert.deepEqual(made.map((one) => [one.id, one.given !== null, one.faults.length]), [['press', true, 0], ['half', false, 2]]);
+    assert.deepEqual(made.map((one) => [one.id, one.given !== null, one.faults.length]), [['press', true, 0], ['bare', true, 1], ['half', false, 2]]);
     assert.deepEqual(made[0]?.texts.map((one) => one.title), ['A press with two-hand control', 'Une presse à commande bimanuelle', 'Uma prensa com comando bimanual']);
     assert.equal(made[0]?.given?.template, readFileSync(join(PRESS, 'template.g7'), 'utf8'));
   } finally {
@@ -244,13 +283,18 @@ test('a folder with a mistake is told with its place when the page is built, and
 test('no text of a hidden test or of a solution can be read in the files of the page', () => {
   const folder = join(HERE, '../exercises');
   const secret: string[] = [];
-  for (const id of readdirSync(folder, { withFileTypes: true }).filter((entry) => entry.isDirectory()).map((entry) => entry.name)) {
+  const ids = readdirSync(folder, { withFileTypes: true }).filter((entry) => entry.isDirectory()).map((entry) => entry.name);
+  // A template of the laboratory gives what was asked before it, so what any of them shows is no secret.
+  const given = ids.map((id) => readFileSync(join(folder, id, 'template.g7'), 'utf8'));
+  const shows = (line: string) => given.some((template) => template.includes(line));
+  for (const id of ids) {
     const text = (name: string) => readFileSync(join(folder, id, name), 'utf8');
     const template = text('template.g7');
+    for (const [title] of text('model.g7').matchAll(/^test ".*"/gm)) assert.ok(template.includes(title) || !shows(title), `${id}: another template shows ${title}`);
     const solutions = ['model.g7', ...readdirSync(join(folder, id, 'wrong')).map((name) => `wrong/${name}`)];
     // Lines of declarations are in the template, and short ones in many files.
     const lines = solutions.flatMap((name) => text(name).split('\n').map((l) => l.trim()));
-    secret.push(...lines.filter((l) => /^(test|prove|step|wait|set|expect|[\w(), ]+ -> )/.test(l) && l.length >= 24 && !template.includes(l)));
+    secret.push(...lines.filter((l) => /^(test|prove|step|wait|set|expect|[\w(), ]+ -> )/.test(l) && l.length >= 24 && !shows(l)));
   }
   assert.ok(secret.length > 40, `${secret.length}`);
   const files = readdirSync(DIST, { recursive: true, withFileTypes: true }).filter((entry) => entry.isFile());

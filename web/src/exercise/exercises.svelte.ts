@@ -13,8 +13,11 @@ import { speech } from '../lib/speech.svelte';
 import { summary } from './told';
 import { progress } from './progress.svelte';
 
-/** Of a whole exercise; of one with mistakes there are only these. */
-export type Exercise = ExercisePacked & { id: string };
+export type Exercise = ExercisePacked & {
+  id: string;
+  /** The pictures of its plants, by the names that the template gives them. */
+  pictures: Record<string, string>;
+};
 
 /** The limits of the search for the answers to questions, in states: first a quick one. */
 const ROUNDS: readonly number[] = [2_000, 200_000];
@@ -63,6 +66,14 @@ class Exercises {
   /** The texts of an exercise in the language of the page. */
   texts(of: Exercise): ExerciseTexts | null {
     return of.texts.find((one) => one.language === prefs.language) ?? of.texts[0] ?? null;
+  }
+
+  /** A picture that a file names, if the file belongs to an exercise that brings it. */
+  async picture(file: string, name: string): Promise<string | null> {
+    const id = progress.idOf(file);
+    if (id === null) return null;
+    await this.load();
+    return this.all.find((one) => one.id === id)?.pictures[name] ?? null;
   }
 
   /** Opens an exercise with its panel. */

@@ -1,5 +1,6 @@
 // The files of a link: which of them go into one, and where they go when it is opened.
 import { drafts } from '../lib/drafts.svelte';
+import { exercises } from '../exercise/exercises.svelte';
 import { embedded } from '../lib/embedded';
 import { files, type OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
@@ -14,17 +15,17 @@ export async function parcelOf(file: OpenFile): Promise<Parcel> {
   await file.settled();
   const uses = (await file.used()).flatMap(({ file: path, text }) => (typeof text === 'string' ? [{ file: beside(file.name, path), text }] : []));
   const pictures: Leaf[] = [];
-  for (const path of new Set(file.look.pictures.map((name) => beside(file.name, name)))) {
-    const text = await readPicture(path).catch(() => null);
-    if (text !== null) pictures.push({ file: path, text });
+  for (const name of new Set(file.look.pictures)) {
+    const text = await readPicture(file.name, name).catch(() => null);
+    if (text !== null) pictures.push({ file: beside(file.name, name), text });
   }
   return { file: file.name, text: file.text, uses, pictures };
 }
 
-/** The text of a picture: that of the folder, or one that came with a link. */
-export async function readPicture(path: string): Promise<string> {
-  const guest = guests.find(path);
-  return guest ?? (await server.read(path)).text;
+/** The text of a picture that a file names: that of its exercise, one that came with a link, or that of the folder. */
+export async function readPicture(file: string, name: string): Promise<string> {
+  const path = beside(file, name);
+  return (await exercises.picture(file, name)) ?? guests.find(path) ?? (await server.read(path)).text;
 }
 
 /** The link from its `#` on; null if the files are too large for one. */

@@ -475,6 +475,11 @@ fn each_exercise_is_right_and_each_wrong_solution_is_caught_by_another_test() {
                 assert!(exercise.join(format!("{text}.{ending}")).is_file(), "{name}: {text}.{ending}");
             }
         }
+        let template = std::fs::read_to_string(exercise.join("template.g7")).expect("the template");
+        let views = template.lines().filter_map(|l| l.trim().strip_prefix("view '")?.split('\'').next());
+        for picture in views {
+            assert!(exercise.join(picture).is_file(), "{name}: the picture {picture}");
+        }
         folder.g7(&["fmt", "--check", &name]).is(0);
     }
 }

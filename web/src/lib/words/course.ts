@@ -12,6 +12,7 @@ export const course = {
   'course.chapter': ['Chapter', 'Chapitre', 'Capítulo'],
   'course.before': ['Chapter before', 'Chapitre précédent', 'Capítulo anterior'],
   'course.next': ['Next chapter', 'Chapitre suivant', 'Capítulo seguinte'],
+  'course.nextIs': ['Next chapter: {title}', 'Chapitre suivant : {title}', 'Capítulo seguinte: {title}'],
   'course.close': ['Close the course', 'Fermer le cours', 'Fechar o curso'],
   'course.question': ['Answers', 'Réponses', 'Respostas'],
   'course.answered': ['answered', 'répondu', 'respondido'],
