@@ -37,7 +37,7 @@ PAGE := $(shell find web/src exercises docs/book/src/problems docs/book/fr docs/
 EXTENSION := editors/vscode
 EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
 
-.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site pictures page-test page-bench bench bench-check grade-bench prove-bench prove-table oscat interop online-bench soak faults book blocks fuzz help FORCE
+.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site site-bench pictures page-test page-bench bench bench-check grade-bench prove-bench prove-table oscat interop online-bench soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -228,6 +228,11 @@ site: web
 	cp -r web/dist site
 	node web/examples.mjs examples site/examples.json
 	node web/pack.mjs site site
+
+## what the static site weighs, and how long it takes to its first picture on a slow CPU
+site-bench: site
+	@$(call debian,chromium,chromium)
+	cd web && npx tsx bench/site.ts
 
 ## the pictures of the examples and of the operator's page, for the book and the README
 pictures: web

@@ -14,7 +14,7 @@ import { chromium, type Browser, type BrowserContext, type Locator, type Page } 
 const HERE = new URL('..', import.meta.url).pathname;
 /** The built page; another one can be named for experiments. */
 const DIST = resolve(process.env.G7_DIST ?? join(HERE, 'dist'));
-const TYPES: Record<string, string> = {
+export const TYPES: Record<string, string> = {
   '.html': 'text/html; charset=utf-8',
   '.js': 'text/javascript',
   '.css': 'text/css',

@@ -67,6 +67,8 @@ const RARE: Message[] = [
   { do: 'test_why', file: 'a.g7', name: 'goes on' },
   { do: 'prove_ways', file: 'a.g7', hash: 'of no text', question: 0, run: [] },
   { do: 'compare', files: ['a.g7', 'a.g7'], profiles: [null, 'iec61131'], states: 1000, mib: 64 },
+  { do: 'logic_read', tongue: 'il', text: 'LD a' },
+  { do: 'merge', base: CHART, mine: CHART, theirs: `${CHART}// more\n` },
   { do: 'exercise_pack', folder: 'on', files: [{ file: 'statement.md', text: '# On\n' }, { file: 'template.g7', text: CHART }, { file: 'model.g7', text: CHART }] },
   { do: 'exercise_check', name: 'a.g7', text: CHART, exercise: { template: CHART, uses: [], sealed: '' }, states: 100 },
 ];
@@ -98,9 +100,7 @@ test('the first module shows, edits, tests and runs by itself', () => {
     { do: 'symbols', file: 'a.g7' },
     { do: 'search', file: 'a.g7', text: 'M' },
     { do: 'logic', file: 'a.g7', id: 'G/t/0' },
-    { do: 'logic_read', tongue: 'il', text: 'LD a' },
     { do: 'test', file: 'a.g7' },
-    { do: 'merge', base: CHART, mine: CHART, theirs: `${CHART}// more\n` },
     { do: 'run_start', file: 'a.g7', run: 'r', moves: [{ wait_ns: 0, set: [[0, '1']] }] },
     { do: 'run_advance', run: 'r', ms: 100 },
     { do: 'run_export', run: 'r', as: 'vcd', signals: [0] },

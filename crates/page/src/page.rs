@@ -303,6 +303,9 @@ impl Answers for Page {
     }
 
     fn merge(&mut self, base: String, mine: String, theirs: String) -> Result<Merged, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
         merge(&base, &mine, &theirs)
     }
 
@@ -340,6 +343,9 @@ impl Answers for Page {
     }
 
     fn logic_read(&mut self, tongue: Tongue, text: String) -> Result<Text, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
         Ok(Text { text: language::logic_read(tongue, &text)? })
     }
 
