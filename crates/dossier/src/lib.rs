@@ -239,6 +239,39 @@ pub struct Dossier {
     pub title: String,
 }
 
+impl Dossier {
+    /// Each sheet as an SVG file with its pictures.
+    pub fn svgs(&self, options: &g7_draw::Options) -> Vec<String> {
+        let one = |(number, page): (usize, &Page)| {
+            let mut page = page.clone();
+            let mine = self.pictures.iter().filter(|p| p.page == number);
+            mine.for_each(|p| page.image(&p.svg, p.at));
+            page.svg(options)
+        };
+        (1..).zip(&self.pages).map(one).collect()
+    }
+}
+
+impl From<g7_rig::testing::Outcome> for Test {
+    fn from(outcome: g7_rig::testing::Outcome) -> Test {
+        let failure = outcome.defect.as_ref().map(|d| Failure {
+            message: d.sentence(),
+            place: d.place.clone(),
+            got: d.got.clone(),
+            situation: d.situation.clone(),
+        });
+        Test {
+            title: outcome.title,
+            place: outcome.place,
+            failure,
+            simulated: outcome.simulated.to_string(),
+            scans: outcome.scans,
+            notes: outcome.notes,
+            chronogram: outcome.recording.as_ref().map(on_paper),
+        }
+    }
+}
+
 /// Makes the dossier.
 pub fn dossier(input: &Input<'_>) -> Dossier {
     // The contents stand before the charts, whose connectors name sheets: their length has to be known first.

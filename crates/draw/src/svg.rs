@@ -253,7 +253,7 @@ pub(crate) fn body(out: &mut String, drawing: &Drawing) {
 }
 
 /// Encodes bytes in base 64 (RFC 4648, section 4).
-fn base64(bytes: &[u8]) -> String {
+pub(crate) fn base64(bytes: &[u8]) -> String {
     const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let sign = |n: u32| char::from(SIGNS[(n & 63) as usize]);
     let mut out = String::with_capacity(bytes.len() / 3 * 4 + 4);

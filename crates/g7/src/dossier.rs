@@ -6,11 +6,11 @@ use clap::ValueEnum;
 use g7_dossier::{Answer, Dossier as Made, Input, Known, Missing, Part, Test, Verdict as Proof, View};
 use g7_host::WallClock;
 use g7_model::{Item, Nanos, PlantItem, Problem, Said, Severity, say};
-use g7_rig::testing::{self, Coverage, Options, Outcome};
+use g7_rig::testing::{self, Coverage, Options};
 
 use crate::draw::{Heading, PaperName, pdf};
-use crate::failure::{Failure, Verdict, raw};
-use crate::message::{talk, tell};
+use crate::failure::{Failure, Verdict};
+use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
 use crate::tongue::language;
@@ -172,26 +172,7 @@ fn tests(args: &Dossier, source: &Source, is_wrong: bool, wanted: bool) -> Resul
         &mut WallClock::default(),
         &mut || {},
     )?;
-    Ok(Known::Here(outcomes.into_iter().map(told).collect()))
-}
-
-/// A result as the dossier has it.
-fn told(outcome: Outcome) -> Test {
-    let failure = outcome.defect.as_ref().map(|d| g7_dossier::Failure {
-        message: d.sentence(),
-        place: d.place.clone(),
-        got: d.got.clone(),
-        situation: d.situation.clone(),
-    });
-    Test {
-        title: outcome.title,
-        place: outcome.place,
-        failure,
-        simulated: outcome.simulated.to_string(),
-        scans: outcome.scans,
-        notes: outcome.notes,
-        chronogram: outcome.recording.as_ref().map(g7_dossier::on_paper),
-    }
+    Ok(Known::Here(outcomes.into_iter().map(Test::from).collect()))
 }
 
 /// The pictures of the plants, or why they cannot be read.
@@ -229,5 +210,5 @@ fn conclude(input: &Input<'_>, made: &Made) {
         parts.push(say!("{proved} proved, {refuted} refuted, {open} not decided"));
     }
     let told: Vec<String> = parts.iter().map(|p| p.in_language(language())).collect();
-    tell(say!("{}", raw(told.join("; "))));
+    talk!("{}", told.join("; "));
 }

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use crate::ink::{Picture, Px, escape};
-use crate::svg::{FontFace, body, style};
+use crate::svg::{FontFace, base64, body, style};
 use crate::text::{clean, shortened, width, wrap_words};
 use crate::{Drawing, Options, Rect};
 
@@ -138,13 +138,15 @@ pub struct Page {
     paper: Paper,
     title: String,
     body: String,
+    /// Pictures over it.
+    over: String,
 }
 
 impl Page {
     /// A sheet with its frame and title block.
     pub fn new(paper: Paper, block: &TitleBlock) -> Page {
         let title = [&*block.title.value, &*block.part.value, &*block.sheet.value].join(" · ");
-        let mut page = Page { paper, title, body: String::new() };
+        let mut page = Page { paper, title, body: String::new(), over: String::new() };
         let mut p = Picture::default();
         let f = paper.frame();
         p.rect("g7-box", f.x, f.y, f.w, f.h);
@@ -192,18 +194,13 @@ impl Page {
         self.body.push_str("</g>");
     }
 
-    /// Adds SVG of the same style in a box of the sheet.
-    pub fn embed(&mut self, svg: &str, from: Rect, to: Rect) {
-        let scale = i64::from(to.w) * 1000 / i64::from(from.w.max(1));
-        let scale = scale.min(i64::from(to.h) * 1000 / i64::from(from.h.max(1))).clamp(1, 100_000);
-        let sized = |n: i32| (i64::from(n) * scale / 1000) as i32;
+    /// Adds an SVG file as a picture of its own, which nothing here styles; it keeps its proportions in the box.
+    pub fn image(&mut self, svg: &[u8], at: Rect) {
+        let (x, y, w, h) = (Px(at.x), Px(at.y), Px(at.w), Px(at.h));
         let _ = write!(
-            self.body,
-            "<g transform=\"translate({} {}) scale({}.{:03})\">{svg}</g>",
-            Px(to.x - sized(from.x)),
-            Px(to.y - sized(from.y)),
-            scale / 1000,
-            scale % 1000
+            self.over,
+            "<image x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\" href=\"data:image/svg+xml;base64,{}\"/>",
+            base64(svg)
         );
     }
 
@@ -215,10 +212,11 @@ impl Page {
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {pw} {ph}\" width=\"{w}mm\" height=\"{h}mm\" \
 role=\"img\"><title>{}</title><style>{font}{}</style><g class=\"g7\"><rect class=\"g7-paper\" x=\"0\" y=\"0\" \
-width=\"{pw}\" height=\"{ph}\"/>{}</g></svg>\n",
+width=\"{pw}\" height=\"{ph}\"/>{}</g>{}</svg>\n",
             escape(&self.title),
             style(options.dark),
-            self.body
+            self.body,
+            self.over
         )
     }
 }

@@ -1,4 +1,4 @@
-//! What sheets of paper must hold, for every example.
+//! What sheets of paper must hold: no symbol is cut or missing, and each end of a link names the sheet of the other.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -27,6 +27,49 @@ pub(crate) fn long(steps: usize) -> Document {
     text.push_str(&format!("  ({}, {steps}) -> 0 when a\n}}\n", half - 1));
     text.push_str("layout Long {\n  comment \"look here\" at 30, 2\n}\n");
     g7_syntax::parse(&text, FileId(0)).0
+}
+
+/// A chart whose transitions join and part steps at random, near and far.
+fn tangled(seed: u64, steps: usize) -> Document {
+    let mut state = seed.wrapping_mul(0x9E37_79B9_7F4A_7C15) | 1;
+    let mut random = |below: usize| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        (state % below as u64) as usize
+    };
+    let mut text = String::from("input a : BOOL\noutput m : BOOL\nchart Tangled {\n  initial step 0\n");
+    for n in 1..steps {
+        let action = ["", " { N m }", " \"a remark of some length, which breaks\""][random(3)];
+        text.push_str(&format!("  step {n}{action}\n"));
+    }
+    for n in 0..steps {
+        let near = |k: usize| (n + k) % steps;
+        let when = ["a", "↑a and not X0 or not a and X0 or ↓a", "5s/X0"][random(3)];
+        let (from, to) = match random(8) {
+            0 => (format!("({n}, {})", near(1 + random(4))), format!("{}", near(5))),
+            1 => (format!("{n}"), format!("({}, {}, {})", near(1), near(2 + random(6)), random(steps))),
+            2 => (format!("{n}"), format!("{}", random(steps))),
+            _ => (format!("{n}"), format!("{}", near(1))),
+        };
+        text.push_str(&format!("  {from} -> {to} when {when}\n"));
+    }
+    g7_syntax::parse(&(text + "}\n"), FileId(0)).0
+}
+
+#[test]
+fn random_charts_stand_on_sheets_without_a_cut() {
+    let mut divided = 0;
+    for seed in 1..=24 {
+        let document = tangled(seed, 10 + 6 * seed as usize);
+        let chart = document.charts().next().expect("a chart");
+        for (name, paper) in Paper::ALL {
+            let made = sheets(&document, chart, &Options::default(), &paper, 1);
+            divided += usize::from(made.len() > 1);
+            assert_eq!(faults(chart, &made, paper, 1), Vec::<String>::new(), "seed {seed} on {name}");
+        }
+    }
+    assert!(divided > 60, "{divided}");
 }
 
 fn symbols(chart: &Chart) -> BTreeSet<String> {

@@ -22,7 +22,7 @@ mod workers;
 use std::path::Path;
 
 use g7_dossier::{Answer, Known, Missing};
-use g7_model::{Nanos, Said, say};
+use g7_model::{Language, Nanos, Said, say};
 use g7_verify::Verdict;
 
 pub(crate) use apart::{compare, read_back};
@@ -98,6 +98,12 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
     })
 }
 
+/// A sentence with another one behind it, if there is one.
+fn joined(first: &Said, then: &Said) -> Said {
+    let both = |language| [first, then].map(|s| s.in_language(language)).join("; ");
+    if then.is_empty() { first.clone() } else { Said::in_each(Language::ALL.map(both)) }
+}
+
 /// The answers to all questions of a file, for a dossier.
 pub(crate) fn answers(path: &Path, time: Nanos) -> Result<Known<Answer>, Failure> {
     let args = Prove::of(path, time);
@@ -119,7 +125,7 @@ pub(crate) fn answers(path: &Path, time: Nanos) -> Result<Known<Answer>, Failure
             Verdict::Refuted(_) => g7_dossier::Verdict::Refuted,
             Verdict::Open(_) => g7_dossier::Verdict::Open,
         },
-        reason: if a.guilt.is_empty() { a.reason } else { say!("{}; {}", a.reason, a.guilt) },
+        reason: joined(&a.reason, &a.guilt),
         help: a.help,
     };
     Ok(Known::Here(found.answers.into_iter().map(told).collect()))
