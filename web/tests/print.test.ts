@@ -75,7 +75,7 @@ test('the dossier has the tests that the page runs', async () => {
   const dialog = page.getByRole('dialog', { name: 'Print' });
   await told(page);
   await dialog.getByRole('combobox', { name: 'Print' }).selectOption('dossier');
-  await dialog.locator('.paper').getByText('0 / 1').waitFor();
+  await dialog.locator('.paper').getByText('0 / 1').first().waitFor();
   const many = await told(page);
   assert.equal(pages(await page.pdf({ preferCSSPageSize: true })).length, many);
 });

@@ -25,14 +25,14 @@ pub fn print(
         let made = sheets(document, chart, options, &paper, drawn.len() + 1);
         let of = made.len();
         outline.push(Entry { level: 0, title: title(chart, language), page: drawn.len() + 1 });
-        let sheets = (1..).zip(made).map(|(n, sheet)| (heading(chart, n, of, language), remark(chart), sheet));
+        let sheets =
+            (1..).zip(made).map(|(n, sheet)| (heading(chart, n, of, language), remark(chart), sheet));
         drawn.extend(sheets);
     }
     let title = if head.title.is_empty() { &source.name } else { &head.title };
     let of = drawn.len();
     let page = |(n, (heading, remark, sheet)): (usize, (String, String, Sheet))| {
-        let mut page =
-            Page::new(paper, &title_block(head, title, &source.name, &heading, (n, of), language));
+        let mut page = Page::new(paper, &title_block(head, title, &source.name, &heading, (n, of), language));
         page.heading(&heading, &remark);
         page.draw(&sheet.drawing, sheet.scale);
         page

@@ -27,7 +27,9 @@ pub(crate) fn site(document: &Document, at: Span, language: Language) -> Option<
         Item::Pre(..) => "PRE".to_owned(),
         Item::Post(..) => "POST".to_owned(),
         Item::Instance(i) => i.chart.text.to_string(),
-        Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Use(_) | Item::Layout(_) => return None,
+        Item::Profile(_) | Item::Cycle(..) | Item::Target(..) | Item::Use(_) | Item::Layout(_) => {
+            return None;
+        }
     })
 }
 

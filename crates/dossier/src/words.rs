@@ -20,7 +20,8 @@ pub(crate) const LEFT_OUT: Told = ["Left out", "Non inclus", "Não incluído"];
 
 pub(crate) const CHARTS: Told = ["Charts", "Grafcets", "Grafcets"];
 pub(crate) const SIGNALS: Told = ["Inputs and outputs", "Entrées et sorties", "Entradas e saídas"];
-pub(crate) const VARIABLES: Told = ["Variables and constants", "Variables et constantes", "Variáveis e constantes"];
+pub(crate) const VARIABLES: Told =
+    ["Variables and constants", "Variables et constantes", "Variáveis e constantes"];
 pub(crate) const REFERENCES: Told = ["Cross references", "Références croisées", "Referências cruzadas"];
 pub(crate) const BODIES: Told = [
     "Actions, functions and processing",
@@ -30,7 +31,8 @@ pub(crate) const BODIES: Told = [
 pub(crate) const PLANTS: Told = ["Plants", "Parties opératives", "Partes operativas"];
 pub(crate) const TESTS: Told = ["Tests", "Essais", "Testes"];
 pub(crate) const PROOFS: Told = ["Proofs", "Preuves", "Provas"];
-pub(crate) const PROBLEMS: Told = ["Problems and warnings", "Problèmes et avertissements", "Problemas e avisos"];
+pub(crate) const PROBLEMS: Told =
+    ["Problems and warnings", "Problèmes et avertissements", "Problemas e avisos"];
 
 pub(crate) const STEPS: Told = ["steps", "étapes", "etapas"];
 pub(crate) const TRANSITIONS: Told = ["transitions", "transitions", "transições"];
@@ -96,10 +98,15 @@ pub(crate) const PROPERTY: Told = ["question", "question", "pergunta"];
 pub(crate) const DECLARATION: Told = ["declaration", "déclaration", "declaração"];
 
 pub(crate) const NONE: Told = ["none", "aucun", "nenhum"];
-pub(crate) const NO_VIEW: Told = ["This plant has no picture.", "Cette partie opérative n’a pas d’image.", "Esta parte operativa não tem imagem."];
+pub(crate) const NO_VIEW: Told = [
+    "This plant has no picture.",
+    "Cette partie opérative n’a pas d’image.",
+    "Esta parte operativa não tem imagem.",
+];
 pub(crate) const VIEW_LOST: Told =
     ["The picture {} is not here: {}", "L’image {} manque : {}", "Falta a imagem {}: {}"];
-pub(crate) const PICTURE_BAD: Told = ["it is no SVG with a size", "ce n’est pas un SVG avec une taille", "não é um SVG com tamanho"];
+pub(crate) const PICTURE_BAD: Told =
+    ["it is no SVG with a size", "ce n’est pas un SVG avec une taille", "não é um SVG com tamanho"];
 
 pub(crate) const PASSED: Told = ["passed", "réussi", "passou"];
 pub(crate) const FAILED: Told = ["failed", "échoué", "falhou"];
@@ -119,8 +126,11 @@ pub(crate) const PROVED: Told = ["proved", "prouvé", "provado"];
 pub(crate) const REFUTED: Told = ["refuted", "réfuté", "refutado"];
 pub(crate) const OPEN: Told = ["not decided", "non décidé", "não decidido"];
 pub(crate) const OWN: Told = ["Questions of the author", "Questions de l’auteur", "Perguntas do autor"];
-pub(crate) const EVERY: Told =
-    ["Questions asked of every chart", "Questions posées à tout grafcet", "Perguntas feitas a qualquer grafcet"];
+pub(crate) const EVERY: Told = [
+    "Questions asked of every chart",
+    "Questions posées à tout grafcet",
+    "Perguntas feitas a qualquer grafcet",
+];
 pub(crate) const ASSUMED: Told = ["Assumptions", "Hypothèses", "Hipóteses"];
 
 pub(crate) const SEVERITY: Told = ["severity", "gravité", "gravidade"];
@@ -131,8 +141,10 @@ pub(crate) const WARNING: Told = ["warning", "avertissement", "aviso"];
 pub(crate) const HELP: Told = ["way out: {}", "remède : {}", "solução: {}"];
 pub(crate) const FINE: Told = ["No problems.", "Aucun problème.", "Sem problemas."];
 
-pub(crate) const NOT_RUN: Told = ["Not run for this dossier.", "Non exécutés pour ce dossier.", "Não executados para este dossiê."];
-pub(crate) const NOT_ASKED: Told = ["Not asked for this dossier.", "Non posées pour ce dossier.", "Não feitas para este dossiê."];
+pub(crate) const NOT_RUN: Told =
+    ["Not run for this dossier.", "Non exécutés pour ce dossier.", "Não executados para este dossiê."];
+pub(crate) const NOT_ASKED: Told =
+    ["Not asked for this dossier.", "Non posées pour ce dossier.", "Não feitas para este dossiê."];
 pub(crate) const IN_THE_WAY: Told = [
     "Errors stand in the way; see the list of problems.",
     "Des erreurs l’empêchent ; voir la liste des problèmes.",

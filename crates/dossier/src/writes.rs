@@ -5,8 +5,8 @@ use std::collections::HashSet;
 
 use g7_model::visit::Visitor;
 use g7_model::{
-    Action, ActionKind, Arg, Document, Expr, ExprKind, Name, Order, Path, Span, Stmt, StmtKind, Target, TestStmt,
-    TestStmtKind,
+    Action, ActionKind, Arg, Document, Expr, ExprKind, Name, Order, Path, Span, Stmt, StmtKind, Target,
+    TestStmt, TestStmtKind,
 };
 
 /// Finds the names that are written.
@@ -86,7 +86,9 @@ impl<'d> Visitor<'d> for Writes {
     fn test(&mut self, s: &'d TestStmt) {
         match &s.kind {
             TestStmtKind::Set(list) => list.iter().for_each(|(target, _)| self.target(target)),
-            TestStmtKind::Pulse(target, _) | TestStmtKind::Force(target, _) | TestStmtKind::Release(target) => {
+            TestStmtKind::Pulse(target, _)
+            | TestStmtKind::Force(target, _)
+            | TestStmtKind::Release(target) => {
                 self.target(target);
             }
             TestStmtKind::Always(_, body) | TestStmtKind::Repeat(_, body) => {

@@ -165,13 +165,8 @@ fn tests(args: &Dossier, source: &Source, is_wrong: bool, wanted: bool) -> Resul
         return Ok(Known::Missing(Missing::Errors));
     }
     let options = Options { limit: Some(args.timeout), record: true, ..Options::default() };
-    let (outcomes, _) = testing::file(
-        source,
-        options,
-        &mut Coverage::default(),
-        &mut WallClock::default(),
-        &mut || {},
-    )?;
+    let (outcomes, _) =
+        testing::file(source, options, &mut Coverage::default(), &mut WallClock::default(), &mut || {})?;
     Ok(Known::Here(outcomes.into_iter().map(Test::from).collect()))
 }
 

@@ -36,8 +36,8 @@ pub(crate) struct Wish {
 
 /// Makes the sheets.
 pub(crate) fn print(file: &File, wish: Wish) -> Result<Printed, Said> {
-    let paper = Paper::named(&wish.paper)
-        .ok_or_else(|| say!("there is no paper {}", Said::foreign(&*wish.paper)))?;
+    let paper =
+        Paper::named(&wish.paper).ok_or_else(|| say!("there is no paper {}", Said::foreign(&*wish.paper)))?;
     let made = if wish.dossier { all(file, paper, wish)? } else { charts(file, paper, &wish)? };
     let [width, height] = paper.mm();
     // The page has the font.

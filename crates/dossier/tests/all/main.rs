@@ -4,7 +4,7 @@
 use g7_dossier::{Answer, Head, Input, Known, Missing, Part, Test, Verdict, dossier};
 use g7_draw::{Look, Options, Paper};
 use g7_host::VirtualClock;
-use g7_model::{Language, Said};
+use g7_model::{Language, Said, Severity};
 use g7_rig::Source;
 use g7_rig::testing::{self, Coverage};
 
@@ -39,7 +39,7 @@ test \"a press never fills\" {
 }
 
 prove never count > MOST \"never too many\"
-prove assume not start
+assume not start or not pump
 ";
 
 fn source(text: &str) -> Source {
@@ -53,7 +53,7 @@ fn tests(source: &Source) -> Known<Test> {
     let mut coverage = Coverage::default();
     let made = testing::file(source, options, &mut coverage, &mut VirtualClock::default(), &mut || {});
     let (outcomes, problems) = made.expect("the tests run");
-    assert!(problems.is_empty(), "{problems:?}");
+    assert!(problems.iter().all(|p| p.severity() == Severity::Warning), "{problems:?}");
     Known::Here(outcomes.into_iter().map(Test::from).collect())
 }
 
@@ -87,8 +87,15 @@ fn text(input: &Input<'_>) -> (usize, String) {
     let mut all = String::new();
     for svg in &sheets {
         for piece in svg.split("<text").skip(1) {
-            let words = piece.split_once('>').and_then(|(_, rest)| rest.split("</text>").next()).unwrap_or("");
-            all.push_str(&words.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&amp;", "&"));
+            let words =
+                piece.split_once('>').and_then(|(_, rest)| rest.split("</text>").next()).unwrap_or("");
+            all.push_str(
+                &words
+                    .replace("&lt;", "<")
+                    .replace("&gt;", ">")
+                    .replace("&quot;", "\"")
+                    .replace("&amp;", "&"),
+            );
         }
     }
     (sheets.len(), bare(&all))
@@ -103,13 +110,37 @@ fn everything_of_the_file_stands_on_the_sheets() {
     let source = source(TANK);
     let (sheets, text) = text(&input(&source, Language::English));
     for part in [
-        "Tank 4", "A. Martin", "Chart Tank", "fills and empties", "at rest", "N pump", "P1 count := count + 1",
+        "Tank 4",
+        "A. Martin",
+        "Chart Tank",
+        "fills and empties",
+        "at rest",
+        "N pump",
+        "P1 count := count + 1",
         "with a comment of such a length that no drawing shows all of it, however wide the sheets may be",
-        "fork: 0 → 1", "↑start and count < MOST", "1 → 0", "2s/X1", "%I0.0", "%Q0.1", "the green button",
-        "lifts water", "retain", "full tanks", "MOST", "action Reset", "{ count := 0; }",
-        "one press fills once – passed", "a press never fills – failed", "expected: not pump",
-        "never count > MOST", "refuted", "a run of 3 scans", "assume not start", "No problems.",
-        "Tank: step 1", "Tank: transition fork: 0 → 1",
+        "fork: 0 → 1",
+        "↑start and count < MOST",
+        "1 → 0",
+        "2s/X1",
+        "%I0.0",
+        "%Q0.1",
+        "the green button",
+        "lifts water",
+        "retain",
+        "full tanks",
+        "MOST",
+        "action Reset",
+        "{ count := 0; }",
+        "one press fills once – passed",
+        "a press never fills – failed",
+        "expected: not pump",
+        "never count > MOST",
+        "refuted",
+        "a run of 3 scans",
+        "assume not start or not pump",
+        "No problems.",
+        "Tank: step 1",
+        "Tank: transition fork: 0 → 1",
     ] {
         assert!(text.contains(&bare(part)), "{part} is in\n{text}");
     }
@@ -136,9 +167,13 @@ fn what_is_left_out_is_named() {
         ..input(&source, Language::English)
     };
     let (_, text) = text(&given);
-    for part in ["Left out: Charts, Variables and constants, Cross references", "Not run for this dossier.",
-        "Not asked for this dossier.", "a press never fills", "never count > MOST"]
-    {
+    for part in [
+        "Left out: Charts, Variables and constants, Cross references",
+        "Not run for this dossier.",
+        "Not asked for this dossier.",
+        "a press never fills",
+        "never count > MOST",
+    ] {
         assert!(text.contains(&bare(part)), "{part} is in\n{text}");
     }
 }
@@ -165,7 +200,8 @@ fn the_contents_name_the_sheets_and_the_bytes_are_the_same_again() {
     let sheets = made.svgs(&options);
     for entry in &made.outline {
         let sheet = sheets.get(entry.page - 1).expect("a sheet");
-        let first = entry.title.split_whitespace().next().expect("a word");
+        // The sheet of the part is that of its first chart.
+        let first = entry.title.split_whitespace().next().expect("a word").trim_end_matches('s');
         assert!(sheet.contains(first), "{entry:?}");
     }
     assert_eq!(dossier(&input).svgs(&options), sheets);
@@ -183,6 +219,7 @@ fn a_table_goes_on_over_sheets_and_loses_no_row() {
     assert!(sheets > 5, "{sheets}");
     assert_eq!(text.matches("safevalue").count(), sheets - 2, "each sheet of the table has its head");
     for n in 0..400 {
-        assert!(text.contains(&format!("signal{n}input")) && text.contains(&format!("ofnumber{n}s")) || n == 399, "{n}");
+        assert!(text.contains(&format!("signal{n}input")), "{n}");
     }
+    assert_eq!(text.matches("thecommentofnumber").count(), 400);
 }

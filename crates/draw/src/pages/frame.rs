@@ -225,7 +225,8 @@ width=\"{pw}\" height=\"{ph}\"/>{}</g>{}</svg>\n",
 fn fields(p: &mut Picture, frame: Rect, b: &TitleBlock) {
     // The widths of the three columns in mm.
     const COLUMNS: [i32; 3] = [52, 92, 36];
-    let rows = [[&b.company, &b.title, &b.sheet], [&b.author, &b.part, &b.revision], [&b.file, &b.program, &b.date]];
+    let rows =
+        [[&b.company, &b.title, &b.sheet], [&b.author, &b.part, &b.revision], [&b.file, &b.program, &b.date]];
     let (left, top) = (frame.x + frame.w - BLOCK * MM, frame.y + frame.h - ROWS * ROW * MM);
     p.rect("g7-action", left, top, BLOCK * MM, ROWS * ROW * MM);
     let mut y = top;

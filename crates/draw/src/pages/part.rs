@@ -151,11 +151,8 @@ impl Part {
             Member::Own(n) => flow.symbols.transitions.get(*n as usize).cloned(),
             Member::Stub(stub) => Some((&gap, stub.as_transition(page))),
         });
-        let symbols = Symbols {
-            steps: steps.collect(),
-            transitions: transitions.collect(),
-            sizes: Sizes::default(),
-        };
+        let symbols =
+            Symbols { steps: steps.collect(), transitions: transitions.collect(), sizes: Sizes::default() };
         let mut drawing = symbols.put(chart, &self.placement, Vec::new(), &[]);
         drawing.items.iter_mut().for_each(|item| self.rename(item));
         drawing
@@ -222,11 +219,14 @@ impl Making<'_, '_> {
         for s in steps {
             let Some((step, _)) = self.flow.symbols.steps.get(*s as usize) else { continue };
             let name = Making::name(self.steps.len());
-            let kind = if matches!(step.kind, StepKind::Macro(_)) { StepKind::Plain } else { step.kind.clone() };
+            let kind =
+                if matches!(step.kind, StepKind::Macro(_)) { StepKind::Plain } else { step.kind.clone() };
             let shape =
                 Step { kind, initial: step.initial, linked: step.linked, ..stub_step(name.text.to_string()) };
             self.chart.items.push(ChartItem::Step(shape));
-            self.sizes.steps.push(self.flow.symbols.sizes.steps.get(*s as usize).copied().unwrap_or_default());
+            self.sizes
+                .steps
+                .push(self.flow.symbols.sizes.steps.get(*s as usize).copied().unwrap_or_default());
             let width = self.flow.symbols.sizes.connectors.get(*s as usize).copied().unwrap_or(0);
             self.sizes.connectors.push(width);
             self.steps.push(Member::Own(*s));
@@ -244,7 +244,9 @@ impl Making<'_, '_> {
 
     fn transition(&mut self, member: Member, from: Vec<Name>, to: Vec<Name>) {
         let size = match &member {
-            Member::Own(t) => self.flow.symbols.sizes.transitions.get(*t as usize).copied().unwrap_or_default(),
+            Member::Own(t) => {
+                self.flow.symbols.sizes.transitions.get(*t as usize).copied().unwrap_or_default()
+            }
             Member::Stub(stub) => stub.transition_extent(self.digits),
         };
         self.sizes.transitions.push(size);
@@ -287,7 +289,12 @@ impl Making<'_, '_> {
                     }
                     None => {
                         let at = self.steps.len();
-                        self.step_stub(Stub { leaving: false, double: false, once: true, tokens: vec![token] });
+                        self.step_stub(Stub {
+                            leaving: false,
+                            double: false,
+                            once: true,
+                            tokens: vec![token],
+                        });
                         shared.insert(one, at);
                         at
                     }
@@ -299,7 +306,8 @@ impl Making<'_, '_> {
                 from.push(self.step_stub(Stub { leaving: false, double, once: false, tokens }));
             }
             if !behind.is_empty() {
-                let tokens: Vec<Token> = behind.iter().map(|s| flow.token(own, End::Step(*s), true)).collect();
+                let tokens: Vec<Token> =
+                    behind.iter().map(|s| flow.token(own, End::Step(*s), true)).collect();
                 let double = to.is_empty() && tokens.len() > 1;
                 to.push(self.step_stub(Stub { leaving: true, double, once: false, tokens }));
             }

@@ -80,7 +80,8 @@ impl Stub {
     /// Its room in the place of a step.
     pub(super) fn step_extent(&self, digits: usize) -> Extent {
         let (w, h) = self.room(digits);
-        let (up, down) = if self.leaving { (0, SQUARE.max(h + 60)) } else { ((h - SQUARE + 60).max(0), SQUARE) };
+        let (up, down) =
+            if self.leaving { (0, SQUARE.max(h + 60)) } else { ((h - SQUARE + 60).max(0), SQUARE) };
         Extent { left: HALF, right: ASIDE + w, up, down }
     }
 

@@ -74,7 +74,9 @@ fn random_charts_stand_on_sheets_without_a_cut() {
 
 fn symbols(chart: &Chart) -> BTreeSet<String> {
     let steps = (0..chart.steps().count()).map(|n| format!("{:?}", End::Step(n as u32)));
-    steps.chain((0..chart.transitions().count()).map(|n| format!("{:?}", End::Transition(n as u32)))).collect()
+    steps
+        .chain((0..chart.transitions().count()).map(|n| format!("{:?}", End::Transition(n as u32))))
+        .collect()
 }
 
 /// Tells what is wrong with the sheets of a chart, which begin with a number.
@@ -99,7 +101,13 @@ fn faults(chart: &Chart, made: &[Sheet], paper: Paper, first: usize) -> Vec<Stri
             }
         }
         let drawn = |of: &dyn Fn(&Part) -> Option<End>| {
-            sheet.drawing.items.iter().filter_map(|i| of(&i.part)).map(|e| format!("{e:?}")).collect::<BTreeSet<_>>()
+            sheet
+                .drawing
+                .items
+                .iter()
+                .filter_map(|i| of(&i.part))
+                .map(|e| format!("{e:?}"))
+                .collect::<BTreeSet<_>>()
         };
         let symbol = |p: &Part| match p {
             Part::Step { step, .. } => Some(End::Step(*step)),
@@ -122,7 +130,11 @@ fn faults(chart: &Chart, made: &[Sheet], paper: Paper, first: usize) -> Vec<Stri
             let link = format!("{:?} to {:?}", a.from, a.to);
             ends.entry(link).or_default().push((a.leaving, number, a.page));
             let label = crate::symbols::connector_label(&a.name, Some(a.page as u32));
-            let shown = sheet.drawing.items.iter().any(|i| i.picture.svg().contains(&crate::ink::escape(label.trim())));
+            let shown = sheet
+                .drawing
+                .items
+                .iter()
+                .any(|i| i.picture.svg().contains(&crate::ink::escape(label.trim())));
             if !shown {
                 faults.push(format!("sheet {number} does not say {label}"));
             }

@@ -126,7 +126,9 @@ fn each(
                 [page] => files::deliver(None, &bytes(page)?),
                 _ => {
                     let n = pages.len();
-                    Err(Failure::Usage(say!("there are {n} sheets, and one fits the standard output: add -o")))
+                    Err(Failure::Usage(say!(
+                        "there are {n} sheets, and one fits the standard output: add -o"
+                    )))
                 }
             };
         }

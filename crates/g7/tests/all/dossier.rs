@@ -93,11 +93,33 @@ fn everything_of_the_file_stands_in_the_dossier() {
     }
     let Some(text) = text(&folder, "tank.pdf") else { return };
     for part in [
-        "Tank 4", "ChartTank", "fills and empties", "at rest", "N pump", "P1 count := count + 1",
-        "fork: 0 → 1", "↑start and count < MOST", "2s/X1", "%I0.0", "%Q0.1", "the green button", "lifts water",
-        "retain", "full tanks", "MOST", "action Reset", "count := 0;", "one press fills once – passed",
-        "a press never fills – failed", "expected: not pump", "never too many", "the pump rests", "refuted",
-        "Cross references", "Tank: step 1", "plant Water",
+        "Tank 4",
+        "ChartTank",
+        "fills and empties",
+        "at rest",
+        "N pump",
+        "P1 count := count + 1",
+        "fork: 0 → 1",
+        "↑start and count < MOST",
+        "2s/X1",
+        "%I0.0",
+        "%Q0.1",
+        "the green button",
+        "lifts water",
+        "retain",
+        "full tanks",
+        "MOST",
+        "action Reset",
+        "count := 0;",
+        "one press fills once – passed",
+        "a press never fills – failed",
+        "expected: not pump",
+        "never too many",
+        "the pump rests",
+        "refuted",
+        "Cross references",
+        "Tank: step 1",
+        "plant Water",
     ] {
         let part: String = part.chars().filter(|c| !c.is_whitespace()).collect();
         assert!(text.contains(&part), "{part} is in\n{text}");

@@ -199,7 +199,8 @@ fn one(
     let limit = if options.record { RECORDED } else { RECENT };
     let again = first.defect.as_ref().map_or(options.record, |d| !d.overdue);
     if again {
-        first = exec::run(bench, plan, seed, None, Some(exec::Record { causes: options.causes, limit }), None);
+        first =
+            exec::run(bench, plan, seed, None, Some(exec::Record { causes: options.causes, limit }), None);
     }
     if let Some(defect) = &mut first.defect {
         defect.describe(source);
