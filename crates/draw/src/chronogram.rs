@@ -53,7 +53,7 @@ pub struct Edge {
     pub show: String,
 }
 
-/// Width of the plot area.
+/// Usual width of the plot area.
 const PLOT: i32 = 9000;
 /// Height of a lane.
 const LANE: i32 = 300;
@@ -68,9 +68,19 @@ const NAME: i32 = 2600;
 
 /// Draws a chronogram as an SVG file.
 pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
-    let names: Vec<String> = chronogram.lanes.iter().map(|l| shortened(&l.name, TEXT, NAME).0).collect();
+    let (p, area) = chronogram_picture(chronogram, None);
+    standalone(area, options, "chronogram", &p.svg())
+}
+
+/// Draws a chronogram so that it is as wide as given; without a width as wide as usual. Tells its box as well.
+pub fn chronogram_picture(chronogram: &Chronogram, wide: Option<i32>) -> (Picture, Rect) {
+    let most = wide.map_or(NAME, |wide| NAME.min(wide / 3));
+    let names: Vec<String> = chronogram.lanes.iter().map(|l| shortened(&l.name, TEXT, most).0).collect();
     let left = names.iter().map(|n| width(n, TEXT)).max().unwrap_or(0) + 120;
-    let plot = Plot { left, from: chronogram.from, to: chronogram.to.max(chronogram.from + Nanos::new(1)) };
+    // The last time stands half over the right edge.
+    let room = wide.map_or(PLOT, |wide| (wide - left - 300).max(1000));
+    let to = chronogram.to.max(chronogram.from + Nanos::new(1));
+    let plot = Plot { left, room, from: chronogram.from, to };
     let low = AXIS + LANE * i32::try_from(chronogram.lanes.len()).unwrap_or(i32::MAX / LANE - 1);
     let mut p = Picture::default();
     plot.axis(&mut p, low);
@@ -79,13 +89,15 @@ pub fn chronogram_svg(chronogram: &Chronogram, options: &Options) -> String {
         p.text("g7-name", left - 120 - width(name, TEXT), base - WAVE / 2 + TEXT * 35 / 100, TEXT, name);
         plot.lane(&mut p, lane, base);
     }
-    let area = p.area().unwrap_or_default().union(&Rect { x: 0, y: 0, w: left + PLOT, h: low });
-    standalone(area, options, "chronogram", &p.svg())
+    let area = p.area().unwrap_or_default().union(&Rect { x: 0, y: 0, w: left + room, h: low });
+    (p, area)
 }
 
 /// The plot area and the span of time that it covers.
 struct Plot {
     left: i32,
+    /// Its width.
+    room: i32,
     from: Nanos,
     to: Nanos,
 }
@@ -96,7 +108,7 @@ impl Plot {
         let count = |time: Nanos| i128::from(time.count());
         let span = count(self.to) - count(self.from);
         let into = count(at.clamp(self.from, self.to)) - count(self.from);
-        self.left + i32::try_from(into * i128::from(PLOT) / span.max(1)).unwrap_or(PLOT)
+        self.left + i32::try_from(into * i128::from(self.room) / span.max(1)).unwrap_or(self.room)
     }
 
     /// Draws the time axis: about ten grid lines at round times, each with its label.
@@ -115,7 +127,7 @@ impl Plot {
     }
 
     fn lane(&self, p: &mut Picture, lane: &Lane, base: i32) {
-        p.line("g7-grid", &[(self.left, base), (self.left + PLOT, base)]);
+        p.line("g7-grid", &[(self.left, base), (self.left + self.room, base)]);
         let pieces = self.pieces(&lane.edges);
         match lane.kind {
             LaneKind::Bool => stair(p, &pieces, |e| if e.value == 0.0 { base } else { base - WAVE }),

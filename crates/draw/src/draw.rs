@@ -17,9 +17,9 @@ use crate::{Bar, Connector, Drawing, End, Item, Options, Part, Placement, Point,
 
 /// The symbols of a chart, built round their anchors, and the room that each needs.
 pub(crate) struct Symbols<'a> {
-    steps: Vec<(&'a Step, StepShape)>,
-    transitions: Vec<(&'a Transition, TransitionShape)>,
-    sizes: Sizes,
+    pub(crate) steps: Vec<(&'a Step, StepShape)>,
+    pub(crate) transitions: Vec<(&'a Transition, TransitionShape)>,
+    pub(crate) sizes: Sizes,
 }
 
 /// Measures the room that each symbol of a chart needs.
@@ -98,6 +98,11 @@ fn corner(p: &PlaceAt) -> Point {
     Point { x: p.x.clamp(-FAR, FAR), y: p.y.clamp(-FAR, FAR) }
 }
 
+/// The comments in the layout section of a chart as they are drawn.
+pub(crate) fn notes_of(document: &Document, chart: &Chart) -> Vec<Item> {
+    notes(places(document, chart)).into_iter().map(Item::from).collect()
+}
+
 fn notes(places: &[PlaceAt]) -> Vec<Inked> {
     let note = |(comment, (text, p)): (u32, (&str, &PlaceAt))| {
         let place = corner(p);
@@ -149,7 +154,13 @@ impl<'a> Symbols<'a> {
 
     /// Puts every symbol at its place, after the items that are there already. `pages` holds the page
     /// number of each step if the chart takes several pages.
-    fn put(self, chart: &Chart, placement: &Placement, mut items: Vec<Item>, pages: &[u32]) -> Drawing {
+    pub(crate) fn put(
+        self,
+        chart: &Chart,
+        placement: &Placement,
+        mut items: Vec<Item>,
+        pages: &[u32],
+    ) -> Drawing {
         items.extend(self.inked(placement, pages).into_iter().map(Item::from));
         let area = items
             .iter()

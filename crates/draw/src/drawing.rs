@@ -31,6 +31,37 @@ pub struct Item {
     pub at: Span,
 }
 
+impl Drawing {
+    /// Puts another drawing beside the items that are there, moved by a vector.
+    pub(crate) fn add(&mut self, other: Drawing, by: Point) {
+        let area = shifted(other.area, by);
+        self.area = if self.items.is_empty() { area } else { self.area.union(&area) };
+        self.items.extend(other.items.into_iter().map(|item| item.moved(by)));
+    }
+}
+
+impl Item {
+    /// The item, shifted by a vector.
+    #[must_use]
+    pub(crate) fn moved(self, by: Point) -> Item {
+        let part = match self.part {
+            Part::Step { step, square } => Part::Step { step, square: shifted(square, by) },
+            Part::Transition { transition, bar, text } => {
+                Part::Transition { transition, bar: shifted(bar, by), text: shifted(text, by) }
+            }
+            Part::Comment { comment, place } => {
+                Part::Comment { comment, place: Point { x: place.x + by.x, y: place.y + by.y } }
+            }
+            part @ (Part::Action { .. } | Part::Link { .. } | Part::Connector { .. } | Part::Text) => part,
+        };
+        Item { part, area: shifted(self.area, by), picture: self.picture.moved(by), at: self.at }
+    }
+}
+
+fn shifted(r: Rect, by: Point) -> Rect {
+    Rect { x: r.x + by.x, y: r.y + by.y, ..r }
+}
+
 /// Which part of a chart an item shows. Steps and transitions are numbered from 0 in the order of
 /// the text.
 #[derive(Clone, Debug, PartialEq, Eq)]

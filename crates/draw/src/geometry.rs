@@ -15,6 +15,12 @@ pub struct Point {
     pub y: i32,
 }
 
+impl From<(i32, i32)> for Point {
+    fn from((x, y): (i32, i32)) -> Point {
+        Point { x, y }
+    }
+}
+
 impl Point {
     /// The vector that leads here from another point.
     #[must_use]

@@ -56,7 +56,8 @@ fn over_step(size: i32) -> i32 {
 }
 
 impl Picture {
-    pub(crate) fn line(&mut self, class: &'static str, points: &[(i32, i32)]) {
+    /// Adds an open polyline; the class is one of the style sheet.
+    pub fn line(&mut self, class: &'static str, points: &[(i32, i32)]) {
         self.ink.push(Ink::Line(class, points.iter().map(|&(x, y)| Point { x, y }).collect()));
     }
 
@@ -64,7 +65,8 @@ impl Picture {
         self.ink.push(Ink::Shape(class, points.iter().map(|&(x, y)| Point { x, y }).collect()));
     }
 
-    pub(crate) fn rect(&mut self, class: &'static str, x: i32, y: i32, w: i32, h: i32) {
+    /// Adds a box.
+    pub fn rect(&mut self, class: &'static str, x: i32, y: i32, w: i32, h: i32) {
         self.ink.push(Ink::Rect(class, Rect { x, y, w, h }));
     }
 
@@ -73,7 +75,7 @@ impl Picture {
     }
 
     /// Adds plain text; (`x`, `y`) is the left end of its base line.
-    pub(crate) fn text(&mut self, class: &'static str, x: i32, y: i32, size: i32, text: &str) {
+    pub fn text(&mut self, class: &'static str, x: i32, y: i32, size: i32, text: &str) {
         if !text.is_empty() {
             self.ink.push(Ink::Text(class, Point { x, y }, size, clean(text)));
         }
@@ -107,6 +109,11 @@ impl Picture {
     /// The bounding box; `None` if nothing is drawn.
     pub(crate) fn area(&self) -> Option<Rect> {
         self.ink.iter().map(Ink::area).reduce(|a, b| a.union(&b))
+    }
+
+    /// Adds another picture, shifted by a vector.
+    pub fn add(&mut self, other: Picture, (x, y): (i32, i32)) {
+        self.ink.extend(other.moved(Point { x, y }).ink);
     }
 
     /// The picture, shifted by a vector.

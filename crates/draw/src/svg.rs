@@ -217,11 +217,7 @@ role=\"img\"><title>{}</title><style>",
         escape(title)
     );
     if options.font {
-        let _ = write!(
-            out,
-            "@font-face{{font-family:\"{FONT_FAMILY}\";src:url(data:font/ttf;base64,{})}}",
-            base64(font())
-        );
+        let _ = write!(out, "{FontFace}");
     }
     let _ = write!(
         out,
@@ -230,8 +226,18 @@ role=\"img\"><title>{}</title><style>",
     );
 }
 
+/// The rule of CSS that brings the font.
+pub(crate) struct FontFace;
+
+impl std::fmt::Display for FontFace {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let font = base64(font());
+        write!(f, "@font-face{{font-family:\"{FONT_FAMILY}\";src:url(data:font/ttf;base64,{font})}}")
+    }
+}
+
 /// Writes the items, each in a group that says which part of the chart it is.
-fn body(out: &mut String, drawing: &Drawing) {
+pub(crate) fn body(out: &mut String, drawing: &Drawing) {
     for item in &drawing.items {
         let part = match item.part {
             Part::Step { .. } => "step",
@@ -247,7 +253,7 @@ fn body(out: &mut String, drawing: &Drawing) {
 }
 
 /// Encodes bytes in base 64 (RFC 4648, section 4).
-fn base64(bytes: &[u8]) -> String {
+pub(crate) fn base64(bytes: &[u8]) -> String {
     const SIGNS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     let sign = |n: u32| char::from(SIGNS[(n & 63) as usize]);
     let mut out = String::with_capacity(bytes.len() / 3 * 4 + 4);

@@ -113,6 +113,8 @@ pub(crate) enum Command {
     Graph(crate::prove::Graph),
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
+    /// Print all that is known of a chart as one PDF: drawings, tables, tests and proofs.
+    Dossier(crate::dossier::Dossier),
     /// Open the editor in the browser, or drive a machine with the page of its operator.
     Serve(crate::serve::Serve),
     /// Show, add, change and remove the users of a server.
@@ -405,6 +407,25 @@ pub(crate) struct Prove {
 }
 
 impl Prove {
+    /// All questions of a file, each with its answer, within a time.
+    pub(crate) fn of(path: &std::path::Path, time: Nanos) -> Prove {
+        Prove {
+            paths: vec![path.to_path_buf()],
+            all: true,
+            profile: None,
+            plant: None,
+            time,
+            memory: MEMORY,
+            states: STATES,
+            junit: None,
+            save: None,
+            tests: None,
+            force: false,
+            format: None,
+            shared: Shared::default(),
+        }
+    }
+
     /// The form of the answers; `--shard` has one of its own.
     pub(crate) fn answers(&self) -> Answers {
         self.format.unwrap_or(Answers::Text)
@@ -412,7 +433,7 @@ impl Prove {
 }
 
 // A proof whose work is shared. A comment of documentation here would take the place of the command's own.
-#[derive(Args, Clone, Debug)]
+#[derive(Args, Clone, Debug, Default)]
 pub(crate) struct Shared {
     /// Share the search over states among so many processes. Without --process all of them are started
     /// here.

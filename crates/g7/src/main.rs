@@ -21,6 +21,7 @@ mod certificate;
 mod check;
 mod cli;
 mod devices;
+mod dossier;
 mod draw;
 mod ended;
 mod explain;
@@ -114,6 +115,7 @@ fn run(command: &Command) -> Result<Verdict, Failure> {
         Command::Compare(args) => prove::compare(args),
         Command::Graph(args) => prove::graph(args),
         Command::Draw(args) => draw::draw(args),
+        Command::Dossier(args) => dossier::dossier(args),
         Command::Serve(args) => serve::serve(args),
         Command::Users(args) => users::users(args),
         Command::Log(args) => journal::journal(args),

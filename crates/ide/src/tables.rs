@@ -98,7 +98,7 @@ pub fn tables(readable: &Readable<'_>) -> Tables {
             Meaning::Variable(v, chart) => variables.push(Variable {
                 name: n.name.text.to_string(),
                 class: v.kind,
-                ty: type_of(v),
+                ty: declared_type(v),
                 init: v.init.as_ref().map_or(String::new(), |e| readable.words(e.at.0)),
                 address: v.address.as_ref().map_or(String::new(), |a| a.text.to_string()),
                 inverted: v.inverted,
@@ -140,7 +140,7 @@ pub fn value_type(ty: &ValueType) -> String {
 }
 
 /// The type of a declaration, with the bounds of an array.
-fn type_of(v: &VarDecl) -> String {
+pub fn declared_type(v: &VarDecl) -> String {
     let ty = value_type(&v.value_type());
     let Some(array) = &v.array else { return ty };
     let bounds: Vec<String> = array
@@ -157,7 +157,7 @@ pub fn declaration(name: &str, v: &VarDecl) -> String {
 }
 
 fn declaration_after(word: &str, name: &str, v: &VarDecl) -> String {
-    let mut line = format!("{word}{name} : {}", type_of(v));
+    let mut line = format!("{word}{name} : {}", declared_type(v));
     if v.init.is_some() && (v.ty != Type::Bool || v.of.is_some()) {
         line.push_str(" := …");
     }

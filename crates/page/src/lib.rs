@@ -30,6 +30,7 @@ mod merge;
 mod overview;
 mod page;
 mod places;
+mod printed;
 mod problems;
 mod prove;
 mod redrawn;

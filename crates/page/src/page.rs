@@ -18,6 +18,7 @@ use crate::language::{self, ActionForm, Coloured, Completion, Hit, Hover, Piece,
 use crate::merge::{Merged, merge};
 use crate::overview::{Overview, overview};
 use crate::places::{Change, inward};
+use crate::printed::{self, Printed};
 use crate::prove::{self, Proof};
 use crate::redrawn::{Redrawn, Shown};
 use crate::request::{Answers, Request};
@@ -336,6 +337,23 @@ impl Answers for Page {
             return between::not_here();
         }
         export::export(&file, self.file(&file)?, &to)
+    }
+
+    fn sheets(
+        &mut self,
+        file: String,
+        paper: String,
+        charts: Vec<String>,
+        dossier: bool,
+        head: Vec<String>,
+        answers: Option<Vec<Vec<String>>>,
+        pictures: Vec<Shelved>,
+    ) -> Result<Printed, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
+        let wish = printed::Wish { paper, charts, dossier, head, answers, pictures };
+        printed::print(self.file(&file)?, wish)
     }
 
     fn logic(&mut self, file: String, id: String) -> Result<Vec<Piece>, Said> {

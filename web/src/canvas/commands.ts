@@ -300,7 +300,7 @@ export const commands: Command[] = [
     when: () => true,
     run: () => editor.camera?.fit(),
   },
-  { id: 'print', title: 'app.print', keys: ['Ctrl+P'], when: () => true, run: () => window.print() },
+  { id: 'print', title: 'app.print', keys: ['Ctrl+P'], when: () => editor.file !== null, run: () => (shell.dialog = 'print') },
 ];
 
 /** The title of a command now, in the language of the page. */

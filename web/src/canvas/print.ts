@@ -1,5 +1,6 @@
 // Printing: the whole chart on one page, without the rest of the page.
 import { svgOf } from '../lib/redrawn';
+import { shell } from '../lib/shell.svelte';
 import { editor } from './editor.svelte';
 
 /** Puts a complete picture into the document while the browser prints. */
@@ -7,7 +8,8 @@ export function keepPrintable(): () => void {
   let picture: HTMLElement | null = null;
   const before = () => {
     const drawing = editor.scene?.drawing;
-    if (!drawing) return;
+    // The preview has sheets of its own.
+    if (!drawing || shell.dialog === 'print') return;
     const [x, y, w, h] = drawing.area;
     picture = document.createElement('div');
     picture.className = 'printed';

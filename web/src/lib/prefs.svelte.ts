@@ -28,6 +28,11 @@ interface Kept {
   guided: boolean;
   /** The address of the page that opens links; empty for this page. */
   place: string;
+  /** The sheets of the print preview. */
+  paper: 'a4' | 'a4-landscape' | 'a3' | 'a3-landscape';
+  /** What the title block says of every chart. */
+  author: string;
+  company: string;
 }
 
 const KEY = 'g7-prefs';
@@ -57,6 +62,9 @@ const first: Kept = {
   follow: false,
   guided: false,
   place: '',
+  paper: 'a4',
+  author: '',
+  company: '',
 };
 
 /** In a frame there is little room, and its page chooses. */

@@ -745,6 +745,15 @@ export type Pages = 'pl7';
 /** The kinds of symbols. */
 export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
 
+/** Sheets as SVG, all of one size. */
+export type Printed = {
+  /** The width of a sheet in mm. */
+  width: number;
+  /** The height of a sheet in mm. */
+  height: number;
+  pages: Array<string>;
+};
+
 /** One problem. */
 export type Problem = {
   code: string;
@@ -1132,6 +1141,19 @@ export interface Requests {
   forms: object;
   /** Exports a file in one of them. */
   export: { file: string; to: string };
+  /** Sheets of paper: of the named charts or, with `dossier`, all that is known of the file. `paper` is one of `a4`,
+   * `a4-landscape`, `a3`, `a3-landscape`. `head` has title, author, company, revision and date; `answers` has for each
+   * question that the page has asked the claim, the verdict, the reason, the way out, the line, and `own` if the author asks it; `pictures` are
+   * those of plants. */
+  sheets: {
+    file: string;
+    paper: string;
+    charts: Array<string>;
+    dossier: boolean;
+    head: Array<string>;
+    answers?: Array<Array<string>> | null;
+    pictures: Array<Shelved>;
+  };
   /** The logic of a symbol in the languages of controllers. */
   logic: { file: string; id: string };
   /** Converts logic in one of these languages to an expression of the text. */
@@ -1285,6 +1307,7 @@ export interface Answers {
   drawing: Redrawn;
   forms: Array<Form>;
   export: Out;
+  sheets: Printed;
   logic: Array<LogicPiece>;
   logic_read: Text;
   style: Style;

@@ -6,6 +6,7 @@ use std::collections::HashMap;
 use g7_model::{Chart, StepKind};
 
 use super::{COLUMNS, LINES};
+use crate::End;
 
 /// The cell of a step, or of a transition under that line of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -31,6 +32,8 @@ pub(super) struct Cells {
     pub(super) behind: Vec<Vec<u32>>,
     /// The number of pages.
     pub(super) pages: u32,
+    /// Every symbol once, in the order in which a reader follows the sequences.
+    pub(super) order: Vec<End>,
 }
 
 /// A symbol that waits for its place.
@@ -161,6 +164,7 @@ impl Placing {
         while let Some((s, at)) = next {
             let Some(place) = self.step_at.get_mut(s as usize) else { return };
             *place = Some(at);
+            self.cells.order.push(End::Step(s));
             next = self.behind(s, at).and_then(|(t, at)| self.follow(t, at));
         }
     }
@@ -169,6 +173,7 @@ impl Placing {
     fn transition(&mut self, t: u32, at: Cell) {
         if let Some(place) = self.transition_at.get_mut(t as usize) {
             *place = Some(at);
+            self.cells.order.push(End::Transition(t));
         }
         if let Some((s, at)) = self.follow(t, at) {
             self.run(s, at);
@@ -194,6 +199,7 @@ impl Placing {
             match place {
                 Some(cell) if down.is_none() && !self.taken(cell) => {
                     self.transition_at[t as usize] = Some(cell);
+                    self.cells.order.push(End::Transition(t));
                     down = Some((t, cell));
                 }
                 _ => waiting.push(t),
@@ -229,6 +235,7 @@ impl Placing {
             if self.transition_at[t].is_none() {
                 let cell = self.top(self.free.len().saturating_sub(1) as u32);
                 self.transition_at[t] = Some(cell);
+                self.cells.order.push(End::Transition(t as u32));
             }
         }
         self.cells.pages = self.free.len() as u32;

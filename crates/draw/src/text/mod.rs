@@ -16,7 +16,7 @@ pub(crate) use stmt::body;
 pub(crate) use words::{name_lines, shortened, wrap_words};
 
 /// The width of a text at a size, both in hundredths of u.
-pub(crate) fn width(text: &str, size: i32) -> i32 {
+pub fn width(text: &str, size: i32) -> i32 {
     let sum: i64 = text.chars().map(|c| i64::from(advance(c).unwrap_or_else(|| guess(c)))).sum();
     i32::try_from((sum * i64::from(size) + 999) / 1000).unwrap_or(i32::MAX / 4)
 }

@@ -1,6 +1,11 @@
 //! `g7 draw`: charts as pictures, in SVG, PNG or PDF, and as files that draw.io edits.
 
 mod paper;
+mod pdf;
+mod printed;
+
+pub(crate) use pdf::pdf;
+pub(crate) use printed::{Heading, PaperName};
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
@@ -23,6 +28,7 @@ Examples:
   g7 draw tank -o pictures/ --as png    a file for each chart
   g7 draw tank > tank.svg               to the standard output
   g7 draw tank -o sfc.svg --look sfc    qualifier boxes, as in IEC 61131-3
+  g7 draw tank -o tank.pdf --pages a4   on sheets of paper with a title block
   g7 draw tank -o tank.drawio           a file that draw.io edits
   g7 draw --shapes -o grafcet.xml       the symbols as a library for draw.io
 
@@ -51,9 +57,11 @@ pub(crate) struct Draw {
     /// The drawing style.
     #[arg(long, value_enum, default_value_t = Manner::Iec60848)]
     look: Manner,
-    /// Divide the drawing into pages like the editor of this PLC.
-    #[arg(long, value_enum, value_name = "PLC")]
+    /// Divide the drawing into sheets of paper, or into pages like the editor of a PLC.
+    #[arg(long, value_enum, value_name = "PAGES")]
     pages: Option<Pages>,
+    #[command(flatten)]
+    heading: Heading,
     /// Draw light on dark.
     #[arg(long)]
     dark: bool,
@@ -80,11 +88,32 @@ enum Manner {
     Sfc,
 }
 
-/// The editor whose pages are used.
+/// The pages on which charts stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Pages {
     /// PL7: 14 lines and 11 columns.
     Pl7,
+    /// Sheets of A4, upright.
+    A4,
+    /// Sheets of A4 on their side.
+    A4Landscape,
+    /// Sheets of A3, upright.
+    A3,
+    /// Sheets of A3 on their side.
+    A3Landscape,
+}
+
+impl Pages {
+    /// The sheet of paper, if it is one.
+    fn paper(self) -> Option<PaperName> {
+        match self {
+            Pages::Pl7 => None,
+            Pages::A4 => Some(PaperName::A4),
+            Pages::A4Landscape => Some(PaperName::A4Landscape),
+            Pages::A3 => Some(PaperName::A3),
+            Pages::A3Landscape => Some(PaperName::A3Landscape),
+        }
+    }
 }
 
 fn scale(text: &str) -> Result<f32, String> {
@@ -114,6 +143,11 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
     }
     let charts = chosen(args, &source)?;
     let options = options(args);
+    if let Some(paper) = args.pages.and_then(Pages::paper) {
+        printed::print(args, &source, &charts, &options, paper.paper())?;
+        return Ok(Verdict::Fine);
+    }
+    args.heading.refuse()?;
     match &args.output {
         Some(folder) if is_folder(folder) => each(args, &source, &charts, &options, folder)?,
         output => {

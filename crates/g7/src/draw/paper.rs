@@ -51,7 +51,7 @@ pub(super) fn print(form: Form, svg: String, scale: f32) -> Result<Vec<u8>, Fail
 }
 
 /// Parses the SVG; texts use only the bundled font.
-fn tree(svg: &str) -> Result<usvg::Tree, Failure> {
+pub(super) fn tree(svg: &str) -> Result<usvg::Tree, Failure> {
     let mut fonts = usvg::fontdb::Database::new();
     fonts.load_font_data(g7_draw::font().to_vec());
     fonts.set_sans_serif_family(g7_draw::FONT_FAMILY);

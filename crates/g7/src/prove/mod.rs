@@ -21,7 +21,8 @@ mod workers;
 
 use std::path::Path;
 
-use g7_model::{Said, say};
+use g7_dossier::{Answer, Known, Missing};
+use g7_model::{Language, Nanos, Said, say};
 use g7_verify::Verdict;
 
 pub(crate) use apart::{compare, read_back};
@@ -95,6 +96,39 @@ pub(crate) fn prove(args: &Prove) -> Result<failure::Verdict, Failure> {
         (false, true) => failure::Verdict::Open,
         (false, false) => failure::Verdict::Fine,
     })
+}
+
+/// A sentence with another one behind it, if there is one.
+fn joined(first: &Said, then: &Said) -> Said {
+    let both = |language| [first, then].map(|s| s.in_language(language)).join("; ");
+    if then.is_empty() { first.clone() } else { Said::in_each(Language::ALL.map(both)) }
+}
+
+/// The answers to all questions of a file, for a dossier.
+pub(crate) fn answers(path: &Path, time: Nanos) -> Result<Known<Answer>, Failure> {
+    let args = Prove::of(path, time);
+    let patience = Patience::new()?;
+    let time = patience.share(args.time);
+    let found = one(path, 0, &args, &patience, [&time, &time])?;
+    if let Some(why) = found.unasked {
+        return Ok(Known::Missing(Missing::Because(why)));
+    }
+    if found.tally.errors > 0 {
+        return Ok(Known::Missing(Missing::Errors));
+    }
+    let told = |a: found::Answered| Answer {
+        place: a.place,
+        claim: a.claim,
+        own: a.own,
+        verdict: match a.verdict {
+            Verdict::Proved(_) => g7_dossier::Verdict::Proved,
+            Verdict::Refuted(_) => g7_dossier::Verdict::Refuted,
+            Verdict::Open(_) => g7_dossier::Verdict::Open,
+        },
+        reason: joined(&a.reason, &a.guilt),
+        help: a.help,
+    };
+    Ok(Known::Here(found.answers.into_iter().map(told).collect()))
 }
 
 /// Asks a file, with its number in the list, all of its questions. `whole` is the time of all files, `time`

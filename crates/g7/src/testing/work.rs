@@ -56,6 +56,7 @@ fn one(args: &Test, path: &Path, failed: &AtomicBool) -> Result<Done, Failure> {
         limit: Some(args.timeout),
         fail_fast: args.fail_fast,
         causes: Some(testing::causes),
+        record: false,
     };
     let (outcomes, problems) =
         testing::file(&source, options, &mut done.coverage, &mut WallClock::default(), &mut || {})?;

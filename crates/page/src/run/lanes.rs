@@ -1,7 +1,7 @@
 //! The recorded signals: edges for a chronogram, and export to files.
 
-use g7_host::{Kind, Recording, write_csv, write_vcd};
-use g7_model::{Nanos, Said};
+use g7_host::{Recording, write_csv, write_vcd};
+use g7_model::Said;
 use serde::Serialize;
 
 use super::running::Run;
@@ -68,40 +68,13 @@ impl Run {
 
 /// Draws the signals as a chronogram.
 fn picture(part: &Recording) -> String {
-    let lane = |(i, signal): (usize, &g7_host::Signal)| g7_draw::Lane {
-        name: signal.name.clone(),
-        kind: match signal.kind {
-            Kind::Bool if signal.group == "steps" => g7_draw::LaneKind::Step,
-            Kind::Bool => g7_draw::LaneKind::Bool,
-            Kind::Int { .. } | Kind::Real | Kind::Lreal | Kind::Time | Kind::Moment(_) => {
-                g7_draw::LaneKind::Number
-            }
-            Kind::Text => g7_draw::LaneKind::Text,
-        },
-        edges: part
-            .changes(i)
-            .map(|(at, v)| g7_draw::Edge { at, value: v.number(signal.kind), show: shown(&v, signal.kind) })
-            .collect(),
-    };
-    let lanes = part.signals().iter().enumerate().map(lane).collect();
-    let chronogram = g7_draw::Chronogram { lanes, from: part.start(), to: part.end() };
-    g7_draw::chronogram_svg(&chronogram, &g7_draw::Options::default())
+    g7_draw::chronogram_svg(&g7_dossier::chronogram(part), &g7_draw::Options::default())
 }
 
 /// The edges of a signal. Of edges that lie too close to be distinguished, only the first and the
 /// last are kept.
 fn lane(part: &Recording, signal: usize, most: usize) -> Vec<(f64, f64, String)> {
     let Some(kind) = part.signals().get(signal).map(|s| s.kind) else { return Vec::new() };
-    let width = ((part.end() - part.start()) / most as i64).max(Nanos::new(1));
-    let crowded = part.count(signal) > most;
-    let mut kept: Vec<(Nanos, g7_host::Value)> = Vec::new();
-    for edge in part.changes(signal) {
-        let slot = |e: &(Nanos, g7_host::Value)| e.0.count_of(width);
-        let full = kept.iter().rev().take(2).filter(|e| slot(e) == slot(&edge)).count() == 2;
-        if crowded && full {
-            kept.pop();
-        }
-        kept.push(edge);
-    }
+    let kept = g7_dossier::thinned(part, signal, most);
     kept.into_iter().map(|(at, v)| (at.as_millis(), v.number(kind), shown(&v, kind))).collect()
 }

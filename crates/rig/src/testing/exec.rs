@@ -72,6 +72,7 @@ pub(super) struct Done {
     pub(super) scans: u64,
     /// Observations that did not make the test fail.
     pub(super) notes: Vec<Said>,
+    pub(super) recording: Option<Recording>,
 }
 
 /// Why the execution of the statements stops.
@@ -107,6 +108,8 @@ impl<'c> Limit<'c> {
 #[derive(Clone, Copy)]
 pub(super) struct Record {
     pub(super) causes: Option<Causes>,
+    /// Changes of each signal that are kept; the latest.
+    pub(super) limit: usize,
 }
 
 /// Runs a test, beginning with the charts' first scan.
@@ -119,12 +122,13 @@ pub(super) fn run<'b>(
     limit: Option<Limit<'_>>,
 ) -> Done {
     let causes = record.and_then(|r| r.causes);
+    let kept = record.map(|r| r.limit);
     let record = record.is_some();
     let mut exec = Exec {
         bench,
         runner: if causes.is_some() { bench.runner(seed).with_tape() } else { bench.runner(seed) },
         causes,
-        recording: record.then(|| Recording::new(bench.signals()).with_limit(4_000)),
+        recording: kept.map(|most| Recording::new(bench.signals()).with_limit(most)),
         inputs: record.then(Vec::new),
         always: Vec::new(),
         coverage,
@@ -142,7 +146,13 @@ pub(super) fn run<'b>(
     if let Some(defect) = &mut defect {
         defect.inputs = exec.inputs.take().unwrap_or_default();
     }
-    Done { defect, simulated: exec.now(), scans: exec.runner.state().scans(), notes: exec.notes }
+    Done {
+        defect,
+        simulated: exec.now(),
+        scans: exec.runner.state().scans(),
+        notes: exec.notes,
+        recording: exec.recording,
+    }
 }
 
 struct Exec<'b, 'c, 'l> {

@@ -16,7 +16,7 @@ mod why;
 
 use std::collections::BTreeSet;
 
-use g7_host::Clock;
+use g7_host::{Clock, Recording};
 use g7_model::{Nanos, Problem, ProfileName, Said, Scenario, Severity, Span};
 
 use crate::bench::{self, Bench};
@@ -47,6 +47,8 @@ pub struct Outcome {
     pub took: Nanos,
     /// Observations that did not make the test fail.
     pub notes: Vec<Said>,
+    /// What the signals did, if it was to be recorded.
+    pub recording: Option<Recording>,
 }
 
 /// Options of a run of tests.
@@ -64,6 +66,8 @@ pub struct Options<'a> {
     pub fail_fast: bool,
     /// Finds the causes of a failure ([`causes`]); a program that shows none need not contain this code.
     pub causes: Option<Causes>,
+    /// Records each test, whether it fails or not.
+    pub record: bool,
 }
 
 /// Runs the tests of a file. Compiles the charts once for each plant that the tests use.
@@ -173,7 +177,12 @@ pub fn problems(source: &Source, profile: Option<ProfileName>) -> Result<Vec<Pro
     Ok(problems)
 }
 
-/// Runs a test; if it fails, runs it again with a recording.
+/// Changes of each signal that the recording of a failure keeps.
+const RECENT: usize = 4_000;
+/// The same for a recording that was asked for.
+const RECORDED: usize = 1_000_000;
+
+/// Runs a test; if it fails, or is to be recorded, runs it again with a recording.
 fn one(
     source: &Source,
     bench: &Bench,
@@ -187,8 +196,11 @@ fn one(
     let seed = scenario.seed.unwrap_or(0);
     let limited = options.limit.map(|length| exec::Limit::new(clock, length));
     let mut first = exec::run(bench, plan, seed, Some(coverage), None, limited);
-    if first.defect.as_ref().is_some_and(|d| !d.overdue) {
-        first = exec::run(bench, plan, seed, None, Some(exec::Record { causes: options.causes }), None);
+    let limit = if options.record { RECORDED } else { RECENT };
+    let again = first.defect.as_ref().map_or(options.record, |d| !d.overdue);
+    if again {
+        first =
+            exec::run(bench, plan, seed, None, Some(exec::Record { causes: options.causes, limit }), None);
     }
     if let Some(defect) = &mut first.defect {
         defect.describe(source);
@@ -203,5 +215,6 @@ fn one(
         scans: first.scans,
         took: clock.now() - begun,
         notes: first.notes,
+        recording: first.recording.filter(|_| options.record),
     }
 }

@@ -1,0 +1,66 @@
+//! Named actions, transition sections, functions, types with members, and what runs before and after the charts, as they
+//! are written.
+
+use g7_model::{ChartItem, Item, Span};
+
+use crate::Input;
+use crate::flow::{Flow, TEXT};
+use crate::sites::site;
+use crate::words;
+
+/// The part of the dossier.
+pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
+    let told = |word| input.language.told(word);
+    flow.next(told(words::BODIES));
+    flow.heading(0, told(words::BODIES));
+    let mut none = true;
+    for at in places(input) {
+        none = false;
+        let title = site(input.source.whole(), at, input.language).unwrap_or_default();
+        flow.heading(1, &title);
+        for line in unindented(input.source.written(at)) {
+            let blanks = line.len() - line.trim_start().len();
+            flow.indented(line.trim_start(), blanks as i32 * TEXT / 2);
+        }
+    }
+    if none {
+        flow.text(told(words::NONE));
+    }
+}
+
+/// The lines of a text, without the blanks that all lines but the first begin with.
+fn unindented(text: &str) -> Vec<&str> {
+    let blanks = |l: &str| l.len() - l.trim_start().len();
+    let rest = text.lines().skip(1).filter(|l| !l.trim().is_empty());
+    let common = rest.map(blanks).min().unwrap_or(0);
+    let mut lines = text.lines();
+    let first = lines.next().unwrap_or_default();
+    let bare = |l: &'_ str| -> usize { common.min(blanks(l)) };
+    std::iter::once(first).chain(lines.map(|l| l.get(bare(l)..).unwrap_or(l))).collect()
+}
+
+/// The places of all that is listed; of the library nothing.
+fn places(input: &Input<'_>) -> Vec<Span> {
+    let source = input.source;
+    let library = |at: &Span| source.others().iter().any(|o| o.library && o.source.id() == at.file);
+    let mut all: Vec<Span> = Vec::new();
+    for item in &source.whole().items {
+        match item {
+            Item::Action(_)
+            | Item::Section(_)
+            | Item::Function(_)
+            | Item::Composed(_)
+            | Item::Pre(..)
+            | Item::Post(..) => all.push(item.at()),
+            Item::Chart(c) => {
+                let own = |i: &&ChartItem| {
+                    !matches!(i, ChartItem::Var(_) | ChartItem::Step(_) | ChartItem::Transition(_))
+                };
+                all.extend(c.items.iter().filter(own).map(ChartItem::at));
+            }
+            _ => {}
+        }
+    }
+    all.retain(|at| !library(at));
+    all
+}

@@ -1,0 +1,115 @@
+//! Sheets of paper for the print preview: charts, or the whole dossier.
+//!
+//! Tests run here, as the panel *Tests* runs them. Questions about all runs are not asked again: the page hands over the
+//! answers that it has.
+
+use g7_dossier::{Answer, Dossier, Head, Input, Known, Missing, Part, Test, Verdict, View, dossier};
+use g7_draw::{Look, Options, Paper};
+use g7_host::VirtualClock;
+use g7_ide::File;
+use g7_model::{Chart, Said, Severity, say};
+use g7_rig::testing::{self, Coverage};
+use serde::Serialize;
+
+use crate::answer::Shelved;
+
+/// Sheets as SVG, all of one size.
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+pub(crate) struct Printed {
+    /// The width of a sheet in mm.
+    width: i32,
+    /// The height of a sheet in mm.
+    height: i32,
+    pages: Vec<String>,
+}
+
+/// What is to be printed, as the page asks for it.
+pub(crate) struct Wish {
+    pub(crate) paper: String,
+    pub(crate) charts: Vec<String>,
+    pub(crate) dossier: bool,
+    pub(crate) head: Vec<String>,
+    pub(crate) answers: Option<Vec<Vec<String>>>,
+    pub(crate) pictures: Vec<Shelved>,
+}
+
+/// Makes the sheets.
+pub(crate) fn print(file: &File, wish: Wish) -> Result<Printed, Said> {
+    let paper =
+        Paper::named(&wish.paper).ok_or_else(|| say!("there is no paper {}", Said::foreign(&*wish.paper)))?;
+    let made = if wish.dossier { all(file, paper, wish)? } else { charts(file, paper, &wish)? };
+    let [width, height] = paper.mm();
+    // The page has the font.
+    let pages = made.svgs(&Options { font: false, ..Options::default() });
+    Ok(Printed { width, height, pages })
+}
+
+fn head(parts: &[String]) -> Head {
+    let part = |n: usize| parts.get(n).cloned().unwrap_or_default();
+    Head { title: part(0), author: part(1), company: part(2), revision: part(3), date: part(4) }
+}
+
+/// The named charts on sheets.
+fn charts(file: &File, paper: Paper, wish: &Wish) -> Result<Dossier, Said> {
+    let named = |c: &&Chart| wish.charts.iter().any(|n| **n == *c.name.text);
+    let charts: Vec<&Chart> = file.source.whole().charts().filter(named).collect();
+    if charts.is_empty() {
+        return Err(say!("there is no chart to print"));
+    }
+    let head = head(&wish.head);
+    Ok(g7_dossier::print(&file.source, &charts, &Options::default(), paper, &head, file.language))
+}
+
+/// The dossier.
+fn all(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
+    let wrong = file.problems.iter().any(|p| p.severity() == Severity::Error);
+    let view = |p: Shelved| View {
+        svg: p.text.map(String::into_bytes).ok_or_else(|| say!("there is no such file")),
+        file: p.file,
+    };
+    let views = wish.pictures.into_iter().map(view);
+    let input = Input {
+        source: &file.source,
+        head: head(&wish.head),
+        paper,
+        language: file.language,
+        look: Look::default(),
+        parts: Part::ALL.iter().map(|(_, part)| *part).collect(),
+        problems: file.problems.to_vec(),
+        tests: if wrong { Known::Missing(Missing::Errors) } else { tests(file)? },
+        answers: match wish.answers {
+            _ if wrong => Known::Missing(Missing::Errors),
+            Some(rows) => Known::Here(rows.iter().map(|row| answer(file, row)).collect()),
+            None => Known::Missing(Missing::NotRun),
+        },
+        views: views.collect(),
+    };
+    Ok(dossier(&input))
+}
+
+fn tests(file: &File) -> Result<Known<Test>, Said> {
+    let options = testing::Options { record: true, ..testing::Options::default() };
+    let mut clock = VirtualClock::default();
+    let (outcomes, _) =
+        testing::file(&file.source, options, &mut Coverage::default(), &mut clock, &mut || {})
+            .map_err(|e| e.said())?;
+    Ok(Known::Here(outcomes.into_iter().map(Test::from).collect()))
+}
+
+/// An answer that the page has, in the language of the page.
+fn answer(file: &File, row: &[String]) -> Answer {
+    let part = |n: usize| row.get(n).cloned().unwrap_or_default();
+    Answer {
+        claim: Said::foreign(part(0)),
+        verdict: match &*part(1) {
+            "proved" => Verdict::Proved,
+            "refuted" => Verdict::Refuted,
+            _ => Verdict::Open,
+        },
+        reason: Said::foreign(part(2)),
+        help: Said::foreign(part(3)),
+        place: format!("{}:{}", file.source.name, part(4)),
+        own: part(5) == "own",
+    }
+}
