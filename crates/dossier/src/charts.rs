@@ -131,7 +131,7 @@ fn steps(flow: &mut Flow, input: &Input<'_>, chart: &Chart, page: &dyn Fn(End) -
     }
 }
 
-/// What is special about a step.
+/// The kind of a step, and its marks.
 fn kind(step: &Step, language: Language) -> String {
     let told = |word| language.told(word).to_owned();
     let mut kinds = Vec::new();

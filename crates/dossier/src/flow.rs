@@ -15,7 +15,7 @@ const HEADINGS: [i32; 2] = [230, 170];
 /// The least height that is left under a heading.
 const KEPT: i32 = 1700;
 
-/// What stands on a sheet.
+/// The contents of a sheet.
 #[derive(Default)]
 struct Draft {
     /// The part of the dossier, for the title block.

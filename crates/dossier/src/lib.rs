@@ -36,7 +36,7 @@ use g7_rig::Source;
 pub use charts::print;
 pub use recorded::{chronogram, on_paper, thinned};
 
-/// What the cover and the title blocks say.
+/// The texts of cover and title blocks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Head {
     /// The title; the name of the file if it is empty.
@@ -96,7 +96,7 @@ pub struct Test {
     pub title: String,
     /// `path:line:column`.
     pub place: String,
-    /// What went wrong; none if it passed.
+    /// Its failure; none if it passed.
     pub failure: Option<Failure>,
     /// The time in the run, and the scans.
     pub simulated: String,
@@ -104,7 +104,7 @@ pub struct Test {
     pub scans: u64,
     /// Observations that did not make it fail.
     pub notes: Vec<Said>,
-    /// What the signals did.
+    /// The signals in its run.
     pub chronogram: Option<Chronogram>,
 }
 
@@ -143,13 +143,13 @@ pub struct Answer {
     pub own: bool,
     /// The answer.
     pub verdict: Verdict,
-    /// What shows it.
+    /// The evidence.
     pub reason: Said,
     /// The way out; may be empty.
     pub help: Said,
 }
 
-/// What is known of a part that has to be run: its results, or why there are none.
+/// The knowledge of a part that has to be run: its results, or why there are none.
 #[derive(Clone, Debug)]
 pub enum Known<T> {
     /// The results.
@@ -182,7 +182,7 @@ pub struct View {
 pub struct Input<'a> {
     /// The file with those that it uses.
     pub source: &'a Source,
-    /// What the cover says.
+    /// The texts of the cover.
     pub head: Head,
     /// The sheets.
     pub paper: Paper,

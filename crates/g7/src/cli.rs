@@ -114,7 +114,7 @@ pub(crate) enum Command {
     /// Draw charts as SVG, PNG or PDF.
     Draw(crate::draw::Draw),
     /// Print all that is known of a chart as one PDF: drawings, tables, tests and proofs.
-    Dossier(crate::dossier::Dossier),
+    Dossier(crate::dossier::args::Dossier),
     /// Open the editor in the browser, or drive a machine with the page of its operator.
     Serve(crate::serve::Serve),
     /// Show, add, change and remove the users of a server.

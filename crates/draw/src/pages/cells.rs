@@ -10,30 +10,30 @@ use crate::End;
 
 /// The cell of a step, or of a transition under that line of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Cell {
+pub(crate) struct Cell {
     /// The page, from 0.
-    pub(super) page: u32,
+    pub(crate) page: u32,
     /// The line of steps, from 0.
-    pub(super) line: u32,
+    pub(crate) line: u32,
     /// The column, from 0.
-    pub(super) column: u32,
+    pub(crate) column: u32,
 }
 
 /// The links of a chart as numbers, and the cell of each symbol.
 #[derive(Debug, Default)]
-pub(super) struct Cells {
-    pub(super) steps: Vec<Cell>,
-    pub(super) transitions: Vec<Cell>,
+pub(crate) struct Cells {
+    pub(crate) steps: Vec<Cell>,
+    pub(crate) transitions: Vec<Cell>,
     /// The preceding steps of each transition.
-    pub(super) from: Vec<Vec<u32>>,
+    pub(crate) from: Vec<Vec<u32>>,
     /// The succeeding steps of each transition.
-    pub(super) to: Vec<Vec<u32>>,
+    pub(crate) to: Vec<Vec<u32>>,
     /// The transitions that follow each step.
-    pub(super) behind: Vec<Vec<u32>>,
+    pub(crate) behind: Vec<Vec<u32>>,
     /// The number of pages.
-    pub(super) pages: u32,
+    pub(crate) pages: u32,
     /// Every symbol once, in the order in which a reader follows the sequences.
-    pub(super) order: Vec<End>,
+    pub(crate) order: Vec<End>,
 }
 
 /// A symbol that waits for its place.
@@ -54,7 +54,7 @@ struct Placing {
 }
 
 /// Gives every symbol of a chart a cell.
-pub(super) fn cells(chart: &Chart) -> Cells {
+pub(crate) fn cells(chart: &Chart) -> Cells {
     let numbers: HashMap<&str, u32> = chart.steps().map(|s| &*s.name.text).zip(0..).collect();
     let known = |names: &[g7_model::Name]| {
         let mut list: Vec<u32> = Vec::new();

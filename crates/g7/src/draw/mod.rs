@@ -1,17 +1,17 @@
 //! `g7 draw`: charts as pictures, in SVG, PNG or PDF, and as files that draw.io edits.
 
+mod heading;
 mod paper;
 mod pdf;
-mod printed;
 
+pub(crate) use heading::{Heading, PaperName};
 pub(crate) use pdf::pdf;
-pub(crate) use printed::{Heading, PaperName};
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
 use clap::ValueEnum;
-use g7_draw::{Look, Options};
+use g7_draw::{Look, Options, Page, Paper};
 use g7_model::{Chart, FileId, say};
 
 use crate::failure::{Failure, Verdict, raw};
@@ -19,6 +19,7 @@ use crate::files;
 use crate::message::talk;
 use crate::report::{self, Tally};
 use crate::sources::{self, Source};
+use crate::tongue::language;
 use paper::Form;
 
 const EXAMPLES: &str = "\
@@ -144,7 +145,7 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
     let charts = chosen(args, &source)?;
     let options = options(args);
     if let Some(paper) = args.pages.and_then(Pages::paper) {
-        printed::print(args, &source, &charts, &options, paper.paper())?;
+        on_sheets(args, &source, &charts, &options, paper.paper())?;
         return Ok(Verdict::Fine);
     }
     args.heading.refuse()?;
@@ -279,4 +280,78 @@ fn each(
 /// A file name for a chart: letters, digits, `-` and `_`.
 fn file_name(chart: &str) -> String {
     chart.chars().map(|c| if c.is_alphanumeric() || matches!(c, '-' | '_') { c } else { '_' }).collect()
+}
+
+/// Draws charts on sheets.
+fn on_sheets(
+    args: &Draw,
+    source: &Source,
+    charts: &[&Chart],
+    options: &Options,
+    paper: Paper,
+) -> Result<(), Failure> {
+    let head = args.heading.head();
+    let folder = args.output.as_deref().filter(|o| is_folder(o));
+    let form = match folder {
+        Some(_) => args.form.unwrap_or(Form::Svg),
+        None => form(args, args.output.as_deref())?,
+    };
+    let made = g7_dossier::print(source, charts, options, paper, &head, language());
+    match (form, folder) {
+        (Form::Drawio, _) => {
+            Err(Failure::Usage(say!("--pages is for pictures; a file of draw.io has a page for each chart")))
+        }
+        (Form::Pdf, None) => files::deliver(args.output.as_deref(), &pdf(&made, &head)?),
+        (Form::Pdf, Some(folder)) => {
+            let stem = Path::new(&source.name).file_stem().map_or("charts".into(), |s| s.to_string_lossy());
+            let path = folder.join(format!("{}.pdf", file_name(&stem)));
+            write_all(args, folder, vec![(path, pdf(&made, &head)?)])
+        }
+        (Form::Svg | Form::Png, _) => each_sheet(args, form, &made.pages, options, folder),
+    }
+}
+
+/// A file for each sheet: `tank-1.svg`, `tank-2.svg`; `tank.svg` if there is one sheet.
+fn each_sheet(
+    args: &Draw,
+    form: Form,
+    pages: &[Page],
+    options: &Options,
+    folder: Option<&Path>,
+) -> Result<(), Failure> {
+    let bytes = |page: &Page| paper::print(form, page.svg(options), args.scale);
+    let output = match (folder, &args.output) {
+        (Some(folder), _) => folder.join(format!("sheet.{}", form.ending())),
+        (None, Some(file)) => file.clone(),
+        (None, None) => {
+            return match pages {
+                [page] => files::deliver(None, &bytes(page)?),
+                _ => {
+                    let n = pages.len();
+                    Err(Failure::Usage(say!(
+                        "there are {n} sheets, and one fits the standard output: add -o"
+                    )))
+                }
+            };
+        }
+    };
+    if let ([page], None) = (pages, folder) {
+        return files::deliver(Some(&output), &bytes(page)?);
+    }
+    let stem = output.file_stem().map_or_else(String::new, |s| s.to_string_lossy().into_owned());
+    let mut made: Vec<(PathBuf, Vec<u8>)> = Vec::new();
+    for (n, page) in (1..).zip(pages) {
+        made.push((output.with_file_name(format!("{stem}-{n}.{}", form.ending())), bytes(page)?));
+    }
+    write_all(args, output.parent().unwrap_or(Path::new("")), made)
+}
+
+/// Writes files of which all were made before, into a folder.
+fn write_all(args: &Draw, folder: &Path, made: Vec<(PathBuf, Vec<u8>)>) -> Result<(), Failure> {
+    let from = files::one(&args.file)?;
+    made.iter().try_for_each(|(path, _)| files::refuse_foreign(Some(path), &[&from], args.force))?;
+    if !folder.as_os_str().is_empty() {
+        std::fs::create_dir_all(folder).map_err(|e| Failure::Write(folder.to_path_buf(), e))?;
+    }
+    made.iter().try_for_each(|(path, bytes)| files::deliver(Some(path), bytes))
 }

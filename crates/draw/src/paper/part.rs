@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::{Chart, ChartItem, ChartKind, Expr, Name, Place, Span, Step, StepKind, Transition, Type};
 
-use super::cells::Cells;
 use super::stub::{Stub, Token};
 use crate::draw::Symbols;
 use crate::layout::layout;
+use crate::pages::Cells;
 use crate::{Drawing, End, Item, Options, Part as Shown, Placement, Rect, Sizes};
 
 /// A chart as the division into sheets sees it.

@@ -6,10 +6,10 @@ use std::collections::{HashMap, HashSet};
 
 use g7_model::{Chart, Document};
 
-use super::cells::cells;
 use super::frame::Paper;
 use super::part::{Flow, Part};
 use crate::draw::{draw, notes_of};
+use crate::pages::cells;
 use crate::{Drawing, End, Item, Options, Point, Rect};
 
 /// One sheet of a chart.
