@@ -1,7 +1,6 @@
 // The sheets of the print preview: what is printed, on which paper, and the pages that the program makes of it.
 import { files, type OpenFile } from '../lib/files.svelte';
 import { page } from '../lib/page';
-import { beside } from '../lib/paths';
 import { prefs } from '../lib/prefs.svelte';
 import { proofs } from '../lib/proofs.svelte';
 import type { Printed, Shelved } from '../lib/protocol';
@@ -71,7 +70,7 @@ function answers(): string[][] | undefined {
 
 async function picturesOf(file: OpenFile): Promise<Shelved[]> {
   const read = async (name: string): Promise<Shelved> => {
-    const text = await readPicture(beside(file.name, name)).catch(() => null);
+    const text = await readPicture(file.name, name).catch(() => null);
     return text === null ? { file: name } : { file: name, text };
   };
   return Promise.all(file.look.pictures.map(read));
