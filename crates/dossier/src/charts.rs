@@ -4,10 +4,10 @@ use g7_draw::{End, Options, Page, Paper, Sheet, sheets};
 use g7_model::{Chart, ChartKind, Document, Language, Step, StepKind, Transition};
 use g7_rig::Source;
 
+use crate::data::{Dossier, Entry, Head, Input, title_block};
 use crate::flow::{Flow, options};
 use crate::table::Table;
 use crate::words::{self, fill};
-use crate::{Dossier, Entry, Head, Input, title_block};
 
 /// Draws charts on sheets of paper, with title blocks, and nothing else.
 pub fn print(
@@ -127,7 +127,7 @@ fn steps(flow: &mut Flow, input: &Input<'_>, chart: &Chart, page: &dyn Fn(End) -
         table.row(vec![name.join("\n"), comment, actions.join("\n"), page(End::Step(n))]);
     }
     if !table.is_empty() {
-        flow.table(&table);
+        table.write(flow);
     }
 }
 
@@ -182,7 +182,7 @@ fn transitions(flow: &mut Flow, input: &Input<'_>, chart: &Chart, page: &dyn Fn(
         table.row(vec![name, receptivity, comment, page(End::Transition(n))]);
     }
     if !table.is_empty() {
-        flow.table(&table);
+        table.write(flow);
     }
 }
 

@@ -4,11 +4,11 @@ use g7_draw::width;
 use g7_model::Severity;
 
 use crate::charts::charts;
+use crate::data::{Input, Known, Missing, Part, Verdict};
 use crate::flow::{Flow, LEADING, TEXT, wrap};
 use crate::table::Table;
 use crate::variables::declared;
 use crate::words;
-use crate::{Input, Known, Missing, Part, Verdict};
 
 /// Size of the title.
 const TITLE: i32 = 420;
@@ -55,7 +55,7 @@ pub(crate) fn begin(input: &Input<'_>, contents: usize) -> Flow {
     for other in input.source.others() {
         rows.row(vec![told(words::FILE).to_owned(), other.path.clone()]);
     }
-    flow.table(&rows);
+    rows.write(&mut flow);
     summary(&mut flow, input);
     let left: Vec<&str> =
         Part::ALL.iter().filter(|(_, p)| !input.parts.contains(p)).map(|(_, p)| told(name(*p))).collect();
@@ -109,7 +109,7 @@ fn summary(flow: &mut Flow, input: &Input<'_>) {
     let errors = input.problems.iter().filter(|p| p.severity() == Severity::Error).count();
     let problems = format!("{errors} / {}", input.problems.len() - errors);
     results(Part::Problems, words::ERRORS_WARNINGS, Ok(problems));
-    flow.table(&table);
+    table.write(flow);
 }
 
 /// Why results are missing, in words.
@@ -131,7 +131,7 @@ const HEADING: i32 = 600;
 
 /// The number of sheets that the contents take.
 pub(crate) fn sheets_of_contents(flow: &Flow) -> usize {
-    let lines = |e: &crate::Entry| {
+    let lines = |e: &crate::data::Entry| {
         let room = flow.inside.w - INDENT * e.level as i32 - width(&e.page.to_string(), TEXT) - 400;
         wrap(&e.title, TEXT, room).len()
     };

@@ -6,10 +6,10 @@ use g7_model::{Item, PlantItem, PropertyKind, Severity};
 
 use crate::charts::written;
 use crate::cover::missing;
+use crate::data::{Answer, Input, Known, Part, Test, Verdict};
 use crate::flow::{Flow, TEXT};
 use crate::table::Table;
 use crate::words::{self, fill};
-use crate::{Answer, Input, Known, Part, Test, Verdict};
 
 /// The plants with their pictures.
 pub(crate) fn plants(flow: &mut Flow, input: &Input<'_>) {
@@ -100,7 +100,7 @@ pub(crate) fn tests(flow: &mut Flow, input: &Input<'_>) {
                 let cells = [&t.title, result, &t.simulated, &t.scans.to_string(), &t.place];
                 table.row(cells.map(str::to_owned).to_vec());
             }
-            flow.table(&table);
+            table.write(flow);
             all.iter().for_each(|t| test(flow, input, t));
         }
     }
@@ -205,7 +205,7 @@ fn answers(flow: &mut Flow, input: &Input<'_>, all: &[&Answer]) {
         let claim = a.claim.in_language(input.language);
         table.row(vec![claim, told(verdict).to_owned(), reason, a.place.clone()]);
     }
-    flow.table(&table);
+    table.write(flow);
 }
 
 /// The problems of the text.
@@ -234,5 +234,5 @@ pub(crate) fn problems(flow: &mut Flow, input: &Input<'_>) {
         }
         table.row(vec![told(severity).to_owned(), p.code.id.to_owned(), what, input.source.place(p.at)]);
     }
-    flow.table(&table);
+    table.write(flow);
 }

@@ -2,8 +2,7 @@
 
 use g7_draw::{Drawing, MM, Options, Page, Picture, Rect, width};
 
-use crate::table::Table;
-use crate::{Dossier, Entry, Input, Placed};
+use crate::data::{Dossier, Entry, Input, Placed};
 
 /// Size of texts.
 pub(crate) const TEXT: i32 = 130;
@@ -167,12 +166,6 @@ impl Flow {
             }
             self.skip(size * LEADING / 100);
         }
-    }
-
-    /// Writes a table.
-    pub(crate) fn table(&mut self, table: &Table) {
-        table.write(self);
-        self.skip(TEXT);
     }
 
     /// Draws strokes at the present height, which they take.

@@ -3,7 +3,7 @@
 
 use g7_model::{ChartItem, Item, Span};
 
-use crate::Input;
+use crate::data::Input;
 use crate::flow::{Flow, TEXT};
 use crate::sites::site;
 use crate::words;

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use g7_compile::references::{Definition, Written};
 use g7_model::Span;
 
-use crate::Input;
+use crate::data::Input;
 use crate::flow::Flow;
 use crate::sites::site;
 use crate::table::Table;
@@ -33,7 +33,7 @@ fn shown(definition: &Definition) -> Option<(String, String)> {
         Definition::Function(name) | Definition::Type(name) | Definition::Chart(name) => {
             Some((name.clone(), String::new()))
         }
-        // What stands inside a type or a plant is told there.
+        // The parts of a type or a plant are told there.
         Definition::Value { .. }
         | Definition::Member { .. }
         | Definition::Transition { .. }
@@ -85,7 +85,7 @@ pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
     if table.is_empty() {
         flow.text(told(words::NONE));
     } else {
-        flow.table(&table);
+        table.write(flow);
     }
 }
 

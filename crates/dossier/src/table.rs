@@ -2,7 +2,7 @@
 
 use g7_draw::width;
 
-use crate::flow::{Flow, LEADING, wrap};
+use crate::flow::{Flow, LEADING, TEXT, wrap};
 
 /// Size of the texts in a table.
 const SIZE: i32 = 112;
@@ -67,7 +67,7 @@ impl Table {
                 flow.need(flow.inside.h);
                 self.part(flow, &columns, &head, true);
             }
-            // What is higher than a sheet goes on on the next one.
+            // A row that is higher than a sheet goes on on the next one.
             while height(&cells) > flow.left() {
                 let lines = ((flow.left() - 2 * PAD) / leading()).max(1) as usize;
                 let now = cells.iter_mut().map(|cell| {
@@ -81,6 +81,7 @@ impl Table {
             }
             self.part(flow, &columns, &cells, false);
         }
+        flow.skip(TEXT);
     }
 
     /// Writes a row, or the head.

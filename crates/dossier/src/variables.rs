@@ -3,8 +3,8 @@
 use g7_ide::tables::declared_type;
 use g7_model::{Chart, ChartItem, InstanceNames, Item, Name, VarDecl, VarKind};
 
-use crate::Input;
 use crate::charts::written;
+use crate::data::Input;
 use crate::flow::Flow;
 use crate::table::Table;
 use crate::words;
@@ -114,7 +114,7 @@ fn types(flow: &mut Flow, input: &Input<'_>) {
     }
     if !table.is_empty() {
         flow.heading(1, told(words::TYPES));
-        flow.table(&table);
+        table.write(flow);
     }
 }
 
@@ -132,7 +132,7 @@ fn instances(flow: &mut Flow, input: &Input<'_>) {
     }
     if !table.is_empty() {
         flow.heading(1, told(words::INSTANCES));
-        flow.table(&table);
+        table.write(flow);
     }
 }
 
@@ -140,6 +140,6 @@ fn write(flow: &mut Flow, input: &Input<'_>, table: &Table) {
     if table.is_empty() {
         flow.text(input.language.told(words::NONE));
     } else {
-        flow.table(table);
+        table.write(flow);
     }
 }

@@ -1,4 +1,4 @@
-//! What stands on the sheets of a dossier, read from their SVG.
+//! The sheets of a dossier, read from their SVG.
 #![allow(missing_docs, reason = "a test")]
 
 use g7_dossier::{Answer, Head, Input, Known, Missing, Part, Test, Verdict, dossier};

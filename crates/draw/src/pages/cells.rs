@@ -5,8 +5,12 @@ use std::collections::HashMap;
 
 use g7_model::{Chart, StepKind};
 
-use super::{COLUMNS, LINES};
 use crate::End;
+
+/// Number of columns of a page.
+pub(super) const COLUMNS: u32 = 11;
+/// Number of lines of steps of a page.
+pub(super) const LINES: u32 = 6;
 
 /// The cell of a step, or of a transition under that line of steps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

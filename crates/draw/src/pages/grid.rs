@@ -2,8 +2,7 @@
 
 use g7_model::{Chart, Span};
 
-use super::cells::{Cell, Cells, cells};
-use super::{COLUMNS, LINES};
+use super::cells::{COLUMNS, Cell, Cells, LINES, cells};
 use crate::ink::Picture;
 use crate::symbols::{DOUBLE_GAP, SMALL, SQUARE, connector_label, connector_width};
 use crate::text::width;

@@ -10,8 +10,3 @@ mod grid;
 
 pub(crate) use cells::{Cells, cells};
 pub(crate) use grid::place;
-
-/// Number of columns of a page.
-const COLUMNS: u32 = 11;
-/// Number of lines of steps of a page.
-const LINES: u32 = 6;

@@ -80,7 +80,7 @@ impl Paper {
         Rect { x: left, y: margin, w: w - left - margin, h: h - 2 * margin }
     }
 
-    /// What is free inside the frame, over the title block.
+    /// The room inside the frame, over the title block.
     pub fn inside(&self) -> Rect {
         let f = self.frame();
         let gap = INSIDE * MM;

@@ -15,7 +15,7 @@ use crate::{Drawing, End, Item, Options, Point, Rect};
 /// One sheet of a chart.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Sheet {
-    /// What stands on it. Symbols have the numbers that they have in the whole chart.
+    /// The drawing on it. Symbols have the numbers that they have in the whole chart.
     pub drawing: Drawing,
     /// Its steps and transitions.
     pub symbols: Vec<End>,

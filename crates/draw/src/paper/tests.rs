@@ -1,4 +1,4 @@
-//! What sheets of paper must hold: no symbol is cut or missing, and each end of a link names the sheet of the other.
+//! The rules of sheets of paper: no symbol is cut or missing, and each end of a link names the sheet of the other.
 
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -32,7 +32,7 @@ impl PaperName {
     }
 }
 
-// What a title block says. A comment of documentation here would take the place of the command's own.
+// The texts of a title block. A comment of documentation here would take the place of the command's own.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct Heading {
     /// The title in the title block; without it the name of the file.

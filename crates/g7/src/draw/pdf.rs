@@ -65,7 +65,31 @@ pub(crate) fn pdf(dossier: &Dossier, head: &Head) -> Result<Vec<u8>, Failure> {
         about.author(TextStr(&head.author));
     }
     about.finish();
-    Ok([pdf.finish().as_slice(), files::PDF_MARK].concat())
+    let mut bytes = pdf.finish();
+    in_order(&mut bytes);
+    Ok([bytes.as_slice(), files::PDF_MARK].concat())
+}
+
+/// Sorts the entries of each list of resources: svg2pdf writes them in the order of a hash. The length of a list stays,
+/// so every object stays at its place.
+fn in_order(pdf: &mut Vec<u8>) {
+    let lines: Vec<&[u8]> = pdf.split(|b| *b == b'\n').collect();
+    let is_entry = |line: &&[u8]| {
+        line.trim_ascii_start().starts_with(b"/") && line.ends_with(b" 0 R") && line.len() < 40
+    };
+    let mut out: Vec<&[u8]> = Vec::with_capacity(lines.len());
+    for run in lines.chunk_by(|a, b| is_entry(a) && is_entry(b)) {
+        let first = out.len();
+        out.extend(run);
+        // Names of one kind: `/gs1 33 0 R`.
+        let numbered = |line: &&[u8]| {
+            line.split(|b| *b == b' ').rev().nth(3).is_some_and(|n| n.last().is_some_and(u8::is_ascii_digit))
+        };
+        if run.len() > 1 && run.iter().all(numbered) {
+            out.get_mut(first..).into_iter().for_each(<[&[u8]]>::sort_unstable);
+        }
+    }
+    *pdf = out.join(&b'\n');
 }
 
 fn whole(paper: Paper) -> [f32; 4] {

@@ -53,7 +53,9 @@ fn text(folder: &Folder, file: &str) -> Option<String> {
 }
 
 fn run(tool: &str, args: &[&str], folder: &Folder) -> Option<String> {
-    if !g7_peers::tool(tool) {
+    // Poppler's tools know `-v` and no `--version`.
+    if !Command::new(tool).arg("-v").output().is_ok_and(|o| o.status.success()) {
+        g7_peers::skip(&format!("{tool} missing"));
         return None;
     }
     let done = Command::new(tool).args(args).current_dir(folder.path(".")).output().expect("it runs");
@@ -174,10 +176,11 @@ fn charts_stand_on_sheets_of_paper() {
     let folder = Folder::with(&long(80));
     folder.g7(&["draw", "--pages", "a4", "-o", "long.pdf", "--company", "Atelier Sud"]).is(0);
     if let (Some(pages), Some(text)) = (pages(&folder, "long.pdf"), text(&folder, "long.pdf")) {
-        assert!(pages > 2 && text.contains(&format!("{pages}/{pages}")), "{pages}\n{text}");
+        assert!(pages > 1 && text.contains(&format!("{pages}/{pages}")), "{pages}\n{text}");
         assert_eq!(text.matches("AtelierSud").count(), pages, "a title block on each");
         assert!(text.contains("(p.2)") && text.contains("(p.1)"), "connectors both ways");
     }
+    folder.write("chart.g7", long(300));
     folder.g7(&["draw", "--pages", "a3-landscape", "-o", "long.svg"]).is(0);
     assert!(folder.path("long-1.svg").exists() && folder.path("long-2.svg").exists());
     let first = std::fs::read_to_string(folder.path("long-1.svg")).expect("a sheet");
