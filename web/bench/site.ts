@@ -1,5 +1,5 @@
-// What the static site weighs, and how long it takes to its first picture on a slow CPU: `make site-bench`. Prints figures; those of
-// time tell of the machine.
+// The weight of the static site, and the time to its first picture on a slow CPU: `make site-bench`. Prints figures; those of time tell of
+// the machine.
 import { readdirSync, readFileSync, statSync } from 'node:fs';
 import { readFile } from 'node:fs/promises';
 import { createServer } from 'node:http';

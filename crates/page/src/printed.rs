@@ -24,7 +24,7 @@ pub(crate) struct Printed {
     pages: Vec<String>,
 }
 
-/// What is to be printed, as the page asks for it.
+/// A wish of the page for sheets.
 pub(crate) struct Wish {
     pub(crate) paper: String,
     pub(crate) charts: Vec<String>,

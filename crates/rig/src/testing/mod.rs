@@ -47,7 +47,7 @@ pub struct Outcome {
     pub took: Nanos,
     /// Observations that did not make the test fail.
     pub notes: Vec<Said>,
-    /// What the signals did, if it was to be recorded.
+    /// The course of the signals, if it was to be recorded.
     pub recording: Option<Recording>,
 }
 
