@@ -29,7 +29,7 @@ pub fn print(
             (1..).zip(made).map(|(n, sheet)| (heading(chart, n, of, language), remark(chart), sheet));
         drawn.extend(sheets);
     }
-    let title = if head.title.is_empty() { &source.name } else { &head.title };
+    let title = head.title_of(&source.name);
     let of = drawn.len();
     let page = |(n, (heading, remark, sheet)): (usize, (String, String, Sheet))| {
         let mut page = Page::new(paper, &title_block(head, title, &source.name, &heading, (n, of), language));
@@ -38,11 +38,11 @@ pub fn print(
         page
     };
     let pages = (1..).zip(drawn).map(page).collect();
-    Dossier { pages, paper, outline, pictures: Vec::new(), title: title.clone() }
+    Dossier { pages, paper, outline, pictures: Vec::new(), title: title.to_owned() }
 }
 
 /// The charts of a file and of those that it uses; of the library none.
-pub(crate) fn charts<'a>(source: &'a Source) -> impl Iterator<Item = &'a Chart> {
+pub(crate) fn charts(source: &Source) -> impl Iterator<Item = &Chart> {
     let library = |c: &&Chart| source.others().iter().any(|o| o.library && o.source.id() == c.at.0.file);
     source.whole().charts().filter(move |c| !library(c))
 }

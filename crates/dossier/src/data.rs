@@ -1,5 +1,8 @@
 //! The data of a dossier: its input and its sheets.
 
+use std::ffi::OsStr;
+use std::path::Path;
+
 use g7_draw::{Chronogram, Page, Paper, Rect, TitleBlock};
 use g7_model::{Language, Problem, Said};
 use g7_rig::Source;
@@ -10,7 +13,7 @@ use crate::words;
 /// The texts of cover and title blocks.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Head {
-    /// The title; the name of the file if it is empty.
+    /// The title; empty for the name of the file.
     pub title: String,
     /// Who made it.
     pub author: String,
@@ -244,14 +247,32 @@ impl From<g7_rig::testing::Outcome> for Test {
 }
 
 impl Input<'_> {
-    /// The title, or the name of the file.
+    /// The title of cover and title blocks.
     pub(crate) fn title(&self) -> &str {
-        if self.head.title.is_empty() { &self.source.name } else { &self.head.title }
+        self.head.title_of(&self.source.name)
+    }
+
+    /// A place as it is printed: the file stands in the title block already.
+    pub(crate) fn place<'p>(&self, place: &'p str) -> &'p str {
+        place.strip_prefix(&*self.source.name).and_then(|rest| rest.strip_prefix(':')).unwrap_or(place)
     }
 
     /// The title block of a sheet.
     pub(crate) fn block(&self, part: &str, page: usize, of: usize) -> TitleBlock {
         title_block(&self.head, self.title(), &self.source.name, part, (page, of), self.language)
+    }
+}
+
+impl Head {
+    /// The title; without one the name of the file without its ending, and that of its folder for a `chart.g7`.
+    pub(crate) fn title_of<'a>(&'a self, file: &'a str) -> &'a str {
+        if !self.title.is_empty() {
+            return &self.title;
+        }
+        let path = Path::new(file);
+        let stem = path.file_stem().and_then(OsStr::to_str).unwrap_or(file);
+        let folder = path.parent().and_then(Path::file_name).and_then(OsStr::to_str);
+        folder.filter(|_| stem == "chart").unwrap_or(stem)
     }
 }
 

@@ -97,7 +97,7 @@ pub(crate) fn tests(flow: &mut Flow, input: &Input<'_>) {
             ]);
             for t in all {
                 let result = told(if t.failure.is_some() { words::FAILED } else { words::PASSED });
-                let cells = [&t.title, result, &t.simulated, &t.scans.to_string(), &t.place];
+                let cells = [&t.title, result, &t.simulated, &t.scans.to_string(), input.place(&t.place)];
                 table.row(cells.map(str::to_owned).to_vec());
             }
             table.write(flow);
@@ -111,7 +111,7 @@ fn test(flow: &mut Flow, input: &Input<'_>, t: &Test) {
     let result = told(if t.failure.is_some() { words::FAILED } else { words::PASSED });
     flow.heading(1, &format!("{} – {result}", t.title));
     if let Some(f) = &t.failure {
-        flow.text(&fill(told(words::AT), &[&f.message.in_language(input.language), &f.place]));
+        flow.text(&fill(told(words::AT), &[&f.message.in_language(input.language), input.place(&f.place)]));
         flow.text(&fill(told(words::SITUATION), &[&f.situation]));
         let got: Vec<String> = f.got.iter().map(|(name, value)| format!("{name} = {value}")).collect();
         if !got.is_empty() {
@@ -203,7 +203,7 @@ fn answers(flow: &mut Flow, input: &Input<'_>, all: &[&Answer]) {
             reason = format!("{reason}\n{help}");
         }
         let claim = a.claim.in_language(input.language);
-        table.row(vec![claim, told(verdict).to_owned(), reason, a.place.clone()]);
+        table.row(vec![claim, told(verdict).to_owned(), reason, input.place(&a.place).to_owned()]);
     }
     table.write(flow);
 }
@@ -232,7 +232,12 @@ pub(crate) fn problems(flow: &mut Flow, input: &Input<'_>) {
         if let Some(help) = &p.help {
             what = format!("{what}\n{}", fill(told(words::HELP), &[&help.in_language(input.language)]));
         }
-        table.row(vec![told(severity).to_owned(), p.code.id.to_owned(), what, input.source.place(p.at)]);
+        table.row(vec![
+            told(severity).to_owned(),
+            p.code.id.to_owned(),
+            what,
+            input.place(&input.source.place(p.at)).to_owned(),
+        ]);
     }
     table.write(flow);
 }

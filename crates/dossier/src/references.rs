@@ -79,7 +79,8 @@ pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
             continue;
         }
         let name = if owner.is_empty() { name } else { format!("{name}\n({owner})") };
-        let declared = named.declared.map_or(String::new(), |at| input.source.place(at));
+        let declared =
+            named.declared.map_or(String::new(), |at| input.place(&input.source.place(at)).to_owned());
         table.row(vec![name, declared, list(named.reads), list(named.writes)]);
     }
     if table.is_empty() {
