@@ -67,6 +67,7 @@ const RARE: Message[] = [
   { do: 'test_why', file: 'a.g7', name: 'goes on' },
   { do: 'prove_ways', file: 'a.g7', hash: 'of no text', question: 0, run: [] },
   { do: 'compare', files: ['a.g7', 'a.g7'], profiles: [null, 'iec61131'], states: 1000, mib: 64 },
+  { do: 'sheets', file: 'a.g7', paper: 'a4', charts: ['G'], dossier: true, head: { title: '', author: '', company: '', revision: '', date: '' }, pictures: [] },
   { do: 'logic_read', tongue: 'il', text: 'LD a' },
   { do: 'merge', base: CHART, mine: CHART, theirs: `${CHART}// more\n` },
   { do: 'exercise_pack', folder: 'on', files: [{ file: 'statement.md', text: '# On\n' }, { file: 'template.g7', text: CHART }, { file: 'model.g7', text: CHART }] },

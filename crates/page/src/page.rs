@@ -339,20 +339,10 @@ impl Answers for Page {
         export::export(&file, self.file(&file)?, &to)
     }
 
-    fn sheets(
-        &mut self,
-        file: String,
-        paper: String,
-        charts: Vec<String>,
-        dossier: bool,
-        head: Vec<String>,
-        answers: Option<Vec<Vec<String>>>,
-        pictures: Vec<Shelved>,
-    ) -> Result<Printed, Said> {
+    fn sheets(&mut self, file: String, wish: printed::Wish) -> Result<Printed, Said> {
         if !WHOLE {
             return between::not_here();
         }
-        let wish = printed::Wish { paper, charts, dossier, head, answers, pictures };
         printed::print(self.file(&file)?, wish)
     }
 

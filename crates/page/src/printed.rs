@@ -9,9 +9,10 @@ use g7_host::VirtualClock;
 use g7_ide::File;
 use g7_model::{Chart, Said, Severity, say};
 use g7_rig::testing::{self, Coverage};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::answer::Shelved;
+use crate::prove::Found;
 
 /// Sheets as SVG, all of one size.
 #[derive(Debug, Serialize)]
@@ -24,40 +25,71 @@ pub(crate) struct Printed {
     pages: Vec<String>,
 }
 
-/// A wish of the page for sheets.
+/// The page's request for sheets.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "SheetsWish", optional_fields = nullable))]
 pub(crate) struct Wish {
-    pub(crate) paper: String,
-    pub(crate) charts: Vec<String>,
-    pub(crate) dossier: bool,
-    pub(crate) head: Vec<String>,
-    pub(crate) answers: Option<Vec<Vec<String>>>,
-    pub(crate) pictures: Vec<Shelved>,
+    /// `a4`, `a4-landscape`, `a3` or `a3-landscape`.
+    paper: String,
+    /// The names of the charts.
+    charts: Vec<String>,
+    /// All that is known of the file, whatever `charts` names.
+    dossier: bool,
+    head: Heading,
+    /// The answers to the questions that the page has asked; none if it has asked nothing.
+    answers: Option<Vec<Row>>,
+    /// The pictures of the plants.
+    pictures: Vec<Shelved>,
+}
+
+/// The texts of the title block.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "SheetsHead"))]
+struct Heading {
+    title: String,
+    author: String,
+    company: String,
+    revision: String,
+    date: String,
+}
+
+/// An answer that the page has, in its language.
+#[derive(Debug, Deserialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "SheetsAnswer"))]
+struct Row {
+    claim: String,
+    verdict: Found,
+    reason: String,
+    help: String,
+    line: usize,
+    /// The author asks it.
+    own: bool,
 }
 
 /// Makes the sheets.
 pub(crate) fn print(file: &File, wish: Wish) -> Result<Printed, Said> {
     let paper =
         Paper::named(&wish.paper).ok_or_else(|| say!("there is no paper {}", Said::foreign(&*wish.paper)))?;
-    let made = if wish.dossier { all(file, paper, wish)? } else { charts(file, paper, &wish)? };
+    let made = if wish.dossier { all(file, paper, wish)? } else { charts(file, paper, wish)? };
     let [width, height] = paper.mm();
     // The page has the font.
     let pages = made.svgs(&Options { font: false, ..Options::default() });
     Ok(Printed { width, height, pages })
 }
 
-fn head(parts: &[String]) -> Head {
-    let part = |n: usize| parts.get(n).cloned().unwrap_or_default();
-    Head { title: part(0), author: part(1), company: part(2), revision: part(3), date: part(4) }
+fn head(heading: Heading) -> Head {
+    let Heading { title, author, company, revision, date } = heading;
+    Head { title, author, company, revision, date }
 }
 
 /// The named charts on sheets.
-fn charts(file: &File, paper: Paper, wish: &Wish) -> Result<Dossier, Said> {
+fn charts(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
     let named = |c: &&Chart| wish.charts.iter().any(|n| **n == *c.name.text);
     let charts: Vec<&Chart> = file.source.whole().charts().filter(named).collect();
     if charts.is_empty() {
         return Err(say!("there is no chart to print"));
     }
-    let head = head(&wish.head);
+    let head = head(wish.head);
     Ok(g7_dossier::print(&file.source, &charts, &Options::default(), paper, &head, file.language))
 }
 
@@ -71,7 +103,7 @@ fn all(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
     let views = wish.pictures.into_iter().map(view);
     let input = Input {
         source: &file.source,
-        head: head(&wish.head),
+        head: head(wish.head),
         paper,
         language: file.language,
         look: Look::default(),
@@ -80,7 +112,7 @@ fn all(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
         tests: if wrong { Known::Missing(Missing::Errors) } else { tests(file)? },
         answers: match wish.answers {
             _ if wrong => Known::Missing(Missing::Errors),
-            Some(rows) => Known::Here(rows.iter().map(|row| answer(file, row)).collect()),
+            Some(rows) => Known::Here(rows.into_iter().map(|row| answer(file, row)).collect()),
             None => Known::Missing(Missing::NotRun),
         },
         views: views.collect(),
@@ -97,19 +129,17 @@ fn tests(file: &File) -> Result<Known<Test>, Said> {
     Ok(Known::Here(outcomes.into_iter().map(Test::from).collect()))
 }
 
-/// An answer that the page has, in the language of the page.
-fn answer(file: &File, row: &[String]) -> Answer {
-    let part = |n: usize| row.get(n).cloned().unwrap_or_default();
+fn answer(file: &File, row: Row) -> Answer {
     Answer {
-        claim: Said::foreign(part(0)),
-        verdict: match &*part(1) {
-            "proved" => Verdict::Proved,
-            "refuted" => Verdict::Refuted,
-            _ => Verdict::Open,
+        claim: Said::foreign(row.claim),
+        verdict: match row.verdict {
+            Found::Proved => Verdict::Proved,
+            Found::Refuted => Verdict::Refuted,
+            Found::Open => Verdict::Open,
         },
-        reason: Said::foreign(part(2)),
-        help: Said::foreign(part(3)),
-        place: format!("{}:{}", file.source.name, part(4)),
-        own: part(5) == "own",
+        reason: Said::foreign(row.reason),
+        help: Said::foreign(row.help),
+        place: format!("{}:{}", file.source.name, row.line),
+        own: row.own,
     }
 }

@@ -13,7 +13,7 @@ use crate::language::{ActionForm, Coloured, Completion, Hit, Hover, Piece, Table
 use crate::merge::Merged;
 use crate::overview::Overview;
 use crate::places::Change;
-use crate::printed::Printed;
+use crate::printed::{Printed, Wish as Sheets};
 use crate::prove::{Both, Compared, Limits, Report as Proved, Ways, Wish as Refuted};
 use crate::redrawn::Redrawn;
 use crate::run::{Asked, Because, Form as SignalsForm, Frame, Lanes, Start, Started, Swapped};
@@ -137,19 +137,8 @@ requests! {
     /// Exports a file in one of them.
     fn export(file: String, to: String) -> Out;
 
-    /// Sheets of paper: of the named charts or, with `dossier`, all that is known of the file. `paper` is one of `a4`,
-    /// `a4-landscape`, `a3`, `a3-landscape`. `head` has title, author, company, revision and date; `answers` has for each
-    /// question that the page has asked the claim, the verdict, the reason, the way out, the line, and `own` if the author asks it; `pictures` are
-    /// those of plants.
-    fn sheets(
-        file: String,
-        paper: String,
-        charts: Vec<String>,
-        dossier: bool,
-        head: Vec<String>,
-        answers: Option<Vec<Vec<String>>>,
-        pictures: Vec<Shelved>,
-    ) -> Printed;
+    /// Sheets of paper: of the named charts or, with `dossier`, all that is known of the file.
+    fn sheets(file: String, #[serde(flatten)] wish: Sheets) -> Printed;
 
     /// The logic of a symbol in the languages of controllers.
     fn logic(file: String, id: String) -> Vec<Piece>;

@@ -888,6 +888,20 @@ export type Sent = Kept | Alike | Item;
 /** How grave a problem is. */
 export type Severity = 'error' | 'warning';
 
+/** An answer that the page has, in its language. */
+export type SheetsAnswer = {
+  claim: string;
+  verdict: Verdict;
+  reason: string;
+  help: string;
+  line: number;
+  /** The author asks it. */
+  own: boolean;
+};
+
+/** The texts of the title block. */
+export type SheetsHead = { title: string; author: string; company: string; revision: string; date: string };
+
 /** A file that another one uses. */
 export type Shelved = {
   /** Its name; where that one is given as well, its path from the folder of that one. */
@@ -1141,17 +1155,19 @@ export interface Requests {
   forms: object;
   /** Exports a file in one of them. */
   export: { file: string; to: string };
-  /** Sheets of paper: of the named charts or, with `dossier`, all that is known of the file. `paper` is one of `a4`,
-   * `a4-landscape`, `a3`, `a3-landscape`. `head` has title, author, company, revision and date; `answers` has for each
-   * question that the page has asked the claim, the verdict, the reason, the way out, the line, and `own` if the author asks it; `pictures` are
-   * those of plants. */
+  /** Sheets of paper: of the named charts or, with `dossier`, all that is known of the file. */
   sheets: {
     file: string;
+    /** `a4`, `a4-landscape`, `a3` or `a3-landscape`. */
     paper: string;
+    /** The names of the charts. */
     charts: Array<string>;
+    /** All that is known of the file, whatever `charts` names. */
     dossier: boolean;
-    head: Array<string>;
-    answers?: Array<Array<string>> | null;
+    head: SheetsHead;
+    /** The answers to the questions that the page has asked; none if it has asked nothing. */
+    answers?: Array<SheetsAnswer> | null;
+    /** The pictures of the plants. */
     pictures: Array<Shelved>;
   };
   /** The logic of a symbol in the languages of controllers. */

@@ -3,7 +3,7 @@ import { files, type OpenFile } from '../lib/files.svelte';
 import { page } from '../lib/page';
 import { prefs } from '../lib/prefs.svelte';
 import { proofs } from '../lib/proofs.svelte';
-import type { Printed, Shelved } from '../lib/protocol';
+import type { Printed, SheetsAnswer, Shelved } from '../lib/protocol';
 import { readPicture } from '../share/parcels';
 
 export type What = 'chart' | 'charts' | 'dossier';
@@ -31,7 +31,7 @@ class Sheets {
       paper: prefs.paper,
       charts: this.what === 'chart' ? [chart] : file.look.charts.map((c) => c.name),
       dossier,
-      head: [this.title, prefs.author, prefs.company, this.revision, this.date],
+      head: { title: this.title, author: prefs.author, company: prefs.company, revision: this.revision, date: this.date },
       answers: dossier ? answers() : undefined,
     };
     await file.settled();
@@ -63,9 +63,9 @@ class Sheets {
 }
 
 /** The answers of the panel *Prove* about the present text, in the language of the page. */
-function answers(): string[][] | undefined {
+function answers(): SheetsAnswer[] | undefined {
   const language = { en: 0, fr: 1, pt: 2 }[prefs.language] as 0 | 1 | 2;
-  return proofs.present?.rows.map((r) => [r.claim[language], r.verdict, r.reason[language], r.help[language], String(r.line), r.own ? 'own' : '']);
+  return proofs.present?.rows.map((r) => ({ claim: r.claim[language], verdict: r.verdict, reason: r.reason[language], help: r.help[language], line: r.line, own: r.own }));
 }
 
 async function picturesOf(file: OpenFile): Promise<Shelved[]> {

@@ -5,7 +5,7 @@ use g7_ide::ids;
 use g7_model::{Document, Nanos, Span};
 use g7_verify::words::{self, Said};
 use g7_verify::{Claim, Evidence, Model, Question, Run, Verdict, blame};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::run::Scan;
 
@@ -63,7 +63,7 @@ enum About {
 }
 
 /// The present knowledge of a claim.
-#[derive(Clone, Copy, Debug, Serialize)]
+#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Verdict"))]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Found {
