@@ -17,6 +17,9 @@ export function onKey(e: KeyboardEvent): void {
     shell.dialog = 'help';
   } else if (ctrl && key === 's') {
     if (file) void save(file);
+  } else if (ctrl && key === 'p' && !e.shiftKey && file && shell.dialog !== 'print') {
+    // In the preview it is the browser's own key, which prints the sheets.
+    shell.dialog = 'print';
   } else if (ctrl && key === 'm' && e.shiftKey) {
     shell.problems();
   } else if (ctrl && key === 'f' && e.shiftKey) {
