@@ -2,11 +2,13 @@
 // virtual: each message advances a run by the same step up to the wanted instant, so that the
 // pictures show the same situation each time. The page of the operator is shown with a machine at work.
 import assert from 'node:assert/strict';
-import { mkdirSync, readdirSync, readFileSync, statSync } from 'node:fs';
+import { mkdirSync, readdirSync, readFileSync } from 'node:fs';
 import { dirname, join, relative } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
 import { browser, open, openWith, playground, type Site } from './lib';
+import { lessons } from './lessons';
 import { bench, Machine } from './machine';
+import { take } from './take';
 
 const ROOT = new URL('../..', import.meta.url).pathname;
 const BOOK = join(ROOT, 'docs/book/src/examples/img');
@@ -169,14 +171,6 @@ async function shown(b: Browser, site: Site, file: string, scene: Scene, size: {
   return page;
 }
 
-async function take(page: Page, path: string, most: number): Promise<void> {
-  for (const quality of [85, 80, 72, 64, 56]) {
-    await page.screenshot({ path, type: 'jpeg', quality, animations: 'disabled', caret: 'hide' });
-    if (statSync(path).size <= most) return;
-  }
-  assert.fail(`${path} is larger than ${most} bytes`);
-}
-
 /** The page of the operator: the mixer at work, with one value forced. */
 async function operator(b: Browser): Promise<void> {
   const machine = await Machine.start();
@@ -333,6 +327,10 @@ try {
     await proofs(b);
     await compared(b);
     process.stdout.write('proofs\n');
+  }
+  if (wanted.length === 0 || wanted.includes('lessons')) {
+    await lessons(b);
+    process.stdout.write('lessons\n');
   }
   if (wanted.includes('wiring')) {
     await wiring(b);
