@@ -29,22 +29,20 @@ pub fn print(
             (1..).zip(made).map(|(n, sheet)| (heading(chart, n, of, language), remark(chart), sheet));
         drawn.extend(sheets);
     }
-    let title = head.title_of(&source.name);
     let of = drawn.len();
     let page = |(n, (heading, remark, sheet)): (usize, (String, String, Sheet))| {
-        let mut page = Page::new(paper, &title_block(head, title, &source.name, &heading, (n, of), language));
+        let mut page = Page::new(paper, &title_block(head, &source.name, &heading, (n, of), language));
         page.heading(&heading, &remark);
         page.draw(&sheet.drawing, sheet.scale);
         page
     };
     let pages = (1..).zip(drawn).map(page).collect();
-    Dossier { pages, paper, outline, pictures: Vec::new(), title: title.to_owned() }
+    Dossier { pages, paper, outline, pictures: Vec::new(), title: head.title_of(&source.name).to_owned() }
 }
 
 /// The charts of a file and of those that it uses; of the library none.
 pub(crate) fn charts(source: &Source) -> impl Iterator<Item = &Chart> {
-    let library = |c: &&Chart| source.others().iter().any(|o| o.library && o.source.id() == c.at.0.file);
-    source.whole().charts().filter(move |c| !library(c))
+    source.whole().charts().filter(|c| !source.is_of_library(c.at.0))
 }
 
 fn title(chart: &Chart, language: Language) -> String {
@@ -100,8 +98,7 @@ pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
         remarks(flow, input, document, chart);
     }
     if first {
-        flow.next(told(words::CHARTS));
-        flow.heading(0, told(words::CHARTS));
+        flow.part(told(words::CHARTS));
         flow.text(told(words::NONE));
     }
 }

@@ -58,7 +58,7 @@ pub(crate) fn begin(input: &Input<'_>, contents: usize) -> Flow {
     rows.write(&mut flow);
     summary(&mut flow, input);
     let left: Vec<&str> =
-        Part::ALL.iter().filter(|(_, p)| !input.parts.contains(p)).map(|(_, p)| told(name(*p))).collect();
+        Part::ALL.iter().filter(|p| !input.parts.contains(p)).map(|p| told(name(*p))).collect();
     if !left.is_empty() {
         flow.skip(TEXT);
         flow.text(&format!("{}: {}", told(words::LEFT_OUT), left.join(", ")));

@@ -49,17 +49,17 @@ pub enum Part {
 }
 
 impl Part {
-    /// All parts, in their order in the dossier, with their names for options.
-    pub const ALL: [(&'static str, Part); 9] = [
-        ("charts", Part::Charts),
-        ("io", Part::Signals),
-        ("variables", Part::Variables),
-        ("references", Part::References),
-        ("bodies", Part::Bodies),
-        ("plants", Part::Plants),
-        ("tests", Part::Tests),
-        ("proofs", Part::Proofs),
-        ("problems", Part::Problems),
+    /// All parts, in their order in the dossier.
+    pub const ALL: [Part; 9] = [
+        Part::Charts,
+        Part::Signals,
+        Part::Variables,
+        Part::References,
+        Part::Bodies,
+        Part::Plants,
+        Part::Tests,
+        Part::Proofs,
+        Part::Problems,
     ];
 }
 
@@ -259,7 +259,7 @@ impl Input<'_> {
 
     /// The title block of a sheet.
     pub(crate) fn block(&self, part: &str, page: usize, of: usize) -> TitleBlock {
-        title_block(&self.head, self.title(), &self.source.name, part, (page, of), self.language)
+        title_block(&self.head, &self.source.name, part, (page, of), self.language)
     }
 }
 
@@ -276,10 +276,9 @@ impl Head {
     }
 }
 
-/// The title block of a sheet, the number of which is given with that of all sheets.
+/// The title block of a sheet. `page` is its number, `of` the number of all sheets.
 pub fn title_block(
     head: &Head,
-    title: &str,
     file: &str,
     part: &str,
     (page, of): (usize, usize),
@@ -291,7 +290,7 @@ pub fn title_block(
     };
     TitleBlock {
         company: field(words::COMPANY, &head.company),
-        title: field(words::TITLE, title),
+        title: field(words::TITLE, head.title_of(file)),
         sheet: field(words::SHEET, &format!("{page} / {of}")),
         author: field(words::AUTHOR, &head.author),
         part: field(words::PART, part),

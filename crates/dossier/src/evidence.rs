@@ -7,15 +7,14 @@ use g7_model::{Item, PlantItem, PropertyKind, Severity};
 use crate::charts::written;
 use crate::cover::missing;
 use crate::data::{Answer, Input, Known, Part, Test, Verdict};
-use crate::flow::{Flow, TEXT};
+use crate::flow::Flow;
 use crate::table::Table;
 use crate::words::{self, fill};
 
 /// The plants with their pictures.
 pub(crate) fn plants(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::PLANTS));
-    flow.heading(0, told(words::PLANTS));
+    flow.part(told(words::PLANTS));
     let mut none = true;
     for item in &input.source.whole().items {
         let Item::Plant(plant) = item else { continue };
@@ -32,10 +31,7 @@ pub(crate) fn plants(flow: &mut Flow, input: &Input<'_>) {
         for file in files {
             picture(flow, input, &file);
         }
-        for line in input.source.written(plant.at.0).lines() {
-            let blanks = line.len() - line.trim_start().len();
-            flow.indented(line.trim_start(), blanks as i32 * TEXT / 2);
-        }
+        flow.written(input.source.written(plant.at.0).lines());
     }
     if none {
         flow.text(told(words::NONE));
@@ -79,8 +75,7 @@ fn size(svg: &[u8]) -> Option<[f64; 2]> {
 /// The tests with their results.
 pub(crate) fn tests(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::TESTS));
-    flow.heading(0, told(words::TESTS));
+    flow.part(told(words::TESTS));
     match &input.tests {
         Known::Missing(why) => {
             flow.text(&missing(input, Part::Tests, why));
@@ -96,8 +91,8 @@ pub(crate) fn tests(flow: &mut Flow, input: &Input<'_>) {
                 (told(words::PLACE), 30),
             ]);
             for t in all {
-                let result = told(if t.failure.is_some() { words::FAILED } else { words::PASSED });
-                let cells = [&t.title, result, &t.simulated, &t.scans.to_string(), input.place(&t.place)];
+                let cells =
+                    [&t.title, result(input, t), &t.simulated, &t.scans.to_string(), input.place(&t.place)];
                 table.row(cells.map(str::to_owned).to_vec());
             }
             table.write(flow);
@@ -106,10 +101,13 @@ pub(crate) fn tests(flow: &mut Flow, input: &Input<'_>) {
     }
 }
 
+fn result(input: &Input<'_>, t: &Test) -> &'static str {
+    input.language.told(if t.failure.is_some() { words::FAILED } else { words::PASSED })
+}
+
 fn test(flow: &mut Flow, input: &Input<'_>, t: &Test) {
     let told = |word| input.language.told(word);
-    let result = told(if t.failure.is_some() { words::FAILED } else { words::PASSED });
-    flow.heading(1, &format!("{} – {result}", t.title));
+    flow.heading(1, &format!("{} – {}", t.title, result(input, t)));
     if let Some(f) = &t.failure {
         flow.text(&fill(told(words::AT), &[&f.message.in_language(input.language), input.place(&f.place)]));
         flow.text(&fill(told(words::SITUATION), &[&f.situation]));
@@ -157,8 +155,7 @@ const LANES: i32 = 4;
 /// The questions with their answers.
 pub(crate) fn proofs(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::PROOFS));
-    flow.heading(0, told(words::PROOFS));
+    flow.part(told(words::PROOFS));
     let assumed = |p: &&g7_model::Property| matches!(p.kind, PropertyKind::Assume(_));
     let properties = || input.source.whole().properties();
     if properties().any(|p| assumed(&p)) {
@@ -211,8 +208,7 @@ fn answers(flow: &mut Flow, input: &Input<'_>, all: &[&Answer]) {
 /// The problems of the text.
 pub(crate) fn problems(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::PROBLEMS));
-    flow.heading(0, told(words::PROBLEMS));
+    flow.part(told(words::PROBLEMS));
     if input.problems.is_empty() {
         flow.text(told(words::FINE));
         return;

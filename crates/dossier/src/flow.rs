@@ -134,10 +134,20 @@ impl Flow {
         }
     }
 
-    /// Writes a text at a distance from the left edge.
-    pub(crate) fn indented(&mut self, text: &str, indent: i32) {
-        let indent = indent.min(self.inside.w / 2);
-        self.lines(&wrap(text, TEXT, self.inside.w - indent), TEXT, "g7-name", indent);
+    /// Begins a part of the dossier on a sheet of its own.
+    pub(crate) fn part(&mut self, title: &str) {
+        self.next(title);
+        self.heading(0, title);
+    }
+
+    /// Writes lines of the chart's text; the blanks at their beginning stay.
+    pub(crate) fn written<'t>(&mut self, lines: impl IntoIterator<Item = &'t str>) {
+        for line in lines {
+            let text = line.trim_start();
+            let blanks = (line.len() - text.len()) as i32;
+            let indent = (blanks * TEXT / 2).min(self.inside.w / 2);
+            self.lines(&wrap(text, TEXT, self.inside.w - indent), TEXT, "g7-name", indent);
+        }
     }
 
     fn lines(&mut self, lines: &[String], size: i32, class: &'static str, indent: i32) {
@@ -168,7 +178,7 @@ impl Flow {
         }
     }
 
-    /// Draws strokes at the present height, which they take.
+    /// Adds a picture at the present height, and goes on below it.
     pub(crate) fn picture(&mut self, picture: Picture, area: Rect) {
         self.need(area.h + 50);
         let by = (self.inside.x - area.x, self.y - area.y);
@@ -176,7 +186,7 @@ impl Flow {
         self.skip(area.h + 50);
     }
 
-    /// Strokes on this sheet, at their places.
+    /// The picture of the present sheet, to which strokes are added at their places.
     pub(crate) fn ink(&mut self) -> &mut Picture {
         &mut self.draft().picture
     }
@@ -186,7 +196,7 @@ impl Flow {
         self.y
     }
 
-    /// Puts a picture of a size (in any unit) at the present height; tells where it stands.
+    /// Puts an SVG file at the present height, and goes on below it. Its size may have any unit: only the proportions count.
     pub(crate) fn place(&mut self, svg: &[u8], [w, h]: [f64; 2]) {
         let most = f64::from((self.inside.h - 10 * MM).min(110 * MM));
         let scale = (f64::from(self.inside.w) / w.max(1.0)).min(most / h.max(1.0)).min(20.0);

@@ -43,13 +43,14 @@ pub fn dossier(input: &Input<'_>) -> Dossier {
     let mut contents = 1;
     loop {
         let mut flow = cover::begin(input, contents);
-        for (_, part) in Part::ALL {
+        for part in Part::ALL {
             if input.parts.contains(&part) {
                 section(&mut flow, input, part);
             }
         }
         let needs = cover::sheets_of_contents(&flow);
-        if needs == contents {
+        // It only grows, so that this ends: labels that name sheets may let a chart take one sheet more or less.
+        if needs <= contents {
             cover::contents(&mut flow, input);
             return flow.done(input);
         }

@@ -4,24 +4,20 @@
 use g7_model::{ChartItem, Item, Span};
 
 use crate::data::Input;
-use crate::flow::{Flow, TEXT};
+use crate::flow::Flow;
 use crate::sites::site;
 use crate::words;
 
 /// The part of the dossier.
 pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::BODIES));
-    flow.heading(0, told(words::BODIES));
+    flow.part(told(words::BODIES));
     let mut none = true;
     for at in places(input) {
         none = false;
         let title = site(input.source.whole(), at, input.language).unwrap_or_default();
         flow.heading(1, &title);
-        for line in unindented(input.source.written(at)) {
-            let blanks = line.len() - line.trim_start().len();
-            flow.indented(line.trim_start(), blanks as i32 * TEXT / 2);
-        }
+        flow.written(unindented(input.source.written(at)));
     }
     if none {
         flow.text(told(words::NONE));
@@ -35,14 +31,12 @@ fn unindented(text: &str) -> Vec<&str> {
     let common = rest.map(blanks).min().unwrap_or(0);
     let mut lines = text.lines();
     let first = lines.next().unwrap_or_default();
-    let bare = |l: &'_ str| -> usize { common.min(blanks(l)) };
-    std::iter::once(first).chain(lines.map(|l| l.get(bare(l)..).unwrap_or(l))).collect()
+    std::iter::once(first).chain(lines.map(|l| l.get(common.min(blanks(l))..).unwrap_or(l))).collect()
 }
 
 /// The places of all that is listed; of the library nothing.
 fn places(input: &Input<'_>) -> Vec<Span> {
     let source = input.source;
-    let library = |at: &Span| source.others().iter().any(|o| o.library && o.source.id() == at.file);
     let mut all: Vec<Span> = Vec::new();
     for item in &source.whole().items {
         match item {
@@ -61,6 +55,6 @@ fn places(input: &Input<'_>) -> Vec<Span> {
             _ => {}
         }
     }
-    all.retain(|at| !library(at));
+    all.retain(|at| !source.is_of_library(*at));
     all
 }

@@ -1,4 +1,4 @@
-//! Recorded signals as a chronogram.
+//! The recorded signals of a run as lanes that `draw` makes a chronogram of.
 
 use g7_draw::{Chronogram, Edge, Lane, LaneKind};
 use g7_host::{Kind, Recording, Signal, Value};
@@ -8,8 +8,8 @@ use g7_rig::values::shown;
 /// Edges of a lane that can be told apart on a sheet.
 const EDGES: usize = 1000;
 
-/// The changes of a signal. Of changes that lie too close to be distinguished where `most` can be, only the first and the
-/// last are kept.
+/// The changes of a signal for a picture that can show `most` of them side by side. Where more than two of them fall on one
+/// place of the picture, only the first and the last are kept.
 pub fn thinned(part: &Recording, signal: usize, most: usize) -> Vec<(Nanos, Value)> {
     let width = ((part.end() - part.start()) / most as i64).max(Nanos::new(1));
     let crowded = part.count(signal) > most;
@@ -30,7 +30,7 @@ pub fn chronogram(of: &Recording) -> Chronogram {
     lanes(of, usize::MAX >> 1)
 }
 
-/// The same for a sheet of paper: without changes that cannot be told apart there.
+/// The same for a sheet of paper: thinned to what can be told apart there ([`thinned`]).
 pub fn on_paper(of: &Recording) -> Chronogram {
     lanes(of, EDGES)
 }

@@ -65,8 +65,7 @@ pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
             list.push(site);
         }
     }
-    flow.next(told(words::REFERENCES));
-    flow.heading(0, told(words::REFERENCES));
+    flow.part(told(words::REFERENCES));
     let mut table = Table::new(&[
         (told(words::NAME), 24),
         (told(words::DECLARED), 20),
@@ -83,11 +82,7 @@ pub(crate) fn section(flow: &mut Flow, input: &Input<'_>) {
             named.declared.map_or(String::new(), |at| input.place(&input.source.place(at)).to_owned());
         table.row(vec![name, declared, list(named.reads), list(named.writes)]);
     }
-    if table.is_empty() {
-        flow.text(told(words::NONE));
-    } else {
-        table.write(flow);
-    }
+    table.write_or(flow, told(words::NONE));
 }
 
 fn list(mut sites: Vec<String>) -> String {

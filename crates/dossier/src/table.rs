@@ -49,6 +49,11 @@ impl Table {
         columns
     }
 
+    /// Writes the table, or a sentence in the place of one without rows.
+    pub(crate) fn write_or(&self, flow: &mut Flow, none: &str) {
+        if self.is_empty() { flow.text(none) } else { self.write(flow) }
+    }
+
     pub(crate) fn write(&self, flow: &mut Flow) {
         let columns = self.columns(flow.inside.x, flow.inside.w);
         let wrapped = |cells: &[String]| -> Vec<Vec<String>> {

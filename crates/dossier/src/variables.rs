@@ -1,7 +1,8 @@
 //! The tables of inputs and outputs, of other variables, and of types and instances.
 
 use g7_ide::tables::declared_type;
-use g7_model::{Chart, ChartItem, InstanceNames, Item, Name, VarDecl, VarKind};
+use g7_model::words::Told;
+use g7_model::{Chart, ChartItem, InstanceNames, Item, Name, Span, VarDecl, VarKind};
 
 use crate::charts::written;
 use crate::data::Input;
@@ -35,8 +36,7 @@ pub(crate) fn declared<'a>(input: &Input<'a>) -> impl Iterator<Item = Declared<'
 /// Inputs and outputs.
 pub(crate) fn signals(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::SIGNALS));
-    flow.heading(0, told(words::SIGNALS));
+    flow.part(told(words::SIGNALS));
     let mut table = Table::new(&[
         (told(words::NAME), 26),
         (told(words::CLASS), 12),
@@ -64,14 +64,13 @@ pub(crate) fn signals(flow: &mut Flow, input: &Input<'_>) {
         let name = d.name.text.to_string();
         table.row(vec![name, told(class).to_owned(), channel, declared_type(d.of), safe, comment]);
     }
-    write(flow, input, &table);
+    table.write_or(flow, told(words::NONE));
 }
 
 /// Other variables and constants, then types and instances.
 pub(crate) fn variables(flow: &mut Flow, input: &Input<'_>) {
     let told = |word| input.language.told(word);
-    flow.next(told(words::VARIABLES));
-    flow.heading(0, told(words::VARIABLES));
+    flow.part(told(words::VARIABLES));
     let mut table = Table::new(&[
         (told(words::NAME), 26),
         (told(words::CLASS), 14),
@@ -98,48 +97,42 @@ pub(crate) fn variables(flow: &mut Flow, input: &Input<'_>) {
         let comment = d.of.comment.as_deref().unwrap_or_default().to_owned();
         table.row(vec![d.name.text.to_string(), class, declared_type(d.of), init, owner, comment]);
     }
-    write(flow, input, &table);
+    table.write_or(flow, told(words::NONE));
     types(flow, input);
     instances(flow, input);
 }
 
 fn types(flow: &mut Flow, input: &Input<'_>) {
-    let told = |word| input.language.told(word);
-    let mut table = Table::new(&[(told(words::NAME), 24), (told(words::DECLARATION), 96)]);
-    for item in &input.source.whole().items {
-        if let Item::Type(t) = item {
-            let name = t.names.first().map_or(String::new(), |n| n.text.to_string());
-            table.row(vec![name, written(input, t.at.0)]);
-        }
-    }
-    if !table.is_empty() {
-        flow.heading(1, told(words::TYPES));
-        table.write(flow);
-    }
+    let rows = input.source.whole().items.iter().filter_map(|item| match item {
+        Item::Type(t) => Some((t.names.first().map_or("", |n| &*n.text), t.at.0)),
+        _ => None,
+    });
+    as_written(flow, input, words::TYPES, rows);
 }
 
 fn instances(flow: &mut Flow, input: &Input<'_>) {
-    let told = |word| input.language.told(word);
-    let mut table = Table::new(&[(told(words::NAME), 24), (told(words::DECLARATION), 96)]);
-    for item in &input.source.whole().items {
-        if let Item::Instance(i) = item {
-            let name = match &i.names {
-                InstanceNames::One(name) => &name.text,
-                InstanceNames::Range(..) => &i.chart.text,
-            };
-            table.row(vec![name.to_string(), written(input, i.at.0)]);
-        }
-    }
-    if !table.is_empty() {
-        flow.heading(1, told(words::INSTANCES));
-        table.write(flow);
-    }
+    let rows = input.source.whole().items.iter().filter_map(|item| match item {
+        Item::Instance(i) => Some(match &i.names {
+            InstanceNames::One(name) => (&*name.text, i.at.0),
+            InstanceNames::Range(..) => (&*i.chart.text, i.at.0),
+        }),
+        _ => None,
+    });
+    as_written(flow, input, words::INSTANCES, rows);
 }
 
-fn write(flow: &mut Flow, input: &Input<'_>, table: &Table) {
-    if table.is_empty() {
-        flow.text(input.language.told(words::NONE));
-    } else {
+/// A table of declarations as they are written, if there are any.
+fn as_written<'n>(
+    flow: &mut Flow,
+    input: &Input<'_>,
+    heading: Told,
+    rows: impl Iterator<Item = (&'n str, Span)>,
+) {
+    let told = |word| input.language.told(word);
+    let mut table = Table::new(&[(told(words::NAME), 24), (told(words::DECLARATION), 96)]);
+    rows.for_each(|(name, at)| table.row(vec![name.to_owned(), written(input, at)]));
+    if !table.is_empty() {
+        flow.heading(1, told(heading));
         table.write(flow);
     }
 }

@@ -99,7 +99,7 @@ impl<'d> Visitor<'d> for Writes {
     }
 }
 
-/// Goes on into the parts of an element that was looked at.
+/// Visits what is inside of an element whose own names [`Writes`] has already found.
 struct Walk<'w>(&'w mut Writes);
 
 impl<'d> Visitor<'d> for Walk<'_> {

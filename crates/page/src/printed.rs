@@ -4,15 +4,15 @@
 //! answers that it has.
 
 use g7_dossier::{Answer, Dossier, Head, Input, Known, Missing, Part, Test, Verdict, View, dossier};
-use g7_draw::{Look, Options, Paper};
-use g7_host::VirtualClock;
+use g7_draw::{Look, Paper};
 use g7_ide::File;
 use g7_model::{Chart, Said, Severity, say};
-use g7_rig::testing::{self, Coverage};
+use g7_rig::testing::{Coverage, Options};
 use serde::{Deserialize, Serialize};
 
 use crate::answer::Shelved;
 use crate::prove::Found;
+use crate::testing::run;
 
 /// Sheets as SVG, all of one size.
 #[derive(Debug, Serialize)]
@@ -73,7 +73,7 @@ pub(crate) fn print(file: &File, wish: Wish) -> Result<Printed, Said> {
     let made = if wish.dossier { all(file, paper, wish)? } else { charts(file, paper, wish)? };
     let [width, height] = paper.mm();
     // The page has the font.
-    let pages = made.svgs(&Options { font: false, ..Options::default() });
+    let pages = made.svgs(&g7_draw::Options { font: false, ..g7_draw::Options::default() });
     Ok(Printed { width, height, pages })
 }
 
@@ -90,7 +90,7 @@ fn charts(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
         return Err(say!("there is no chart to print"));
     }
     let head = head(wish.head);
-    Ok(g7_dossier::print(&file.source, &charts, &Options::default(), paper, &head, file.language))
+    Ok(g7_dossier::print(&file.source, &charts, &g7_draw::Options::default(), paper, &head, file.language))
 }
 
 /// The dossier.
@@ -107,7 +107,7 @@ fn all(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
         paper,
         language: file.language,
         look: Look::default(),
-        parts: Part::ALL.iter().map(|(_, part)| *part).collect(),
+        parts: Part::ALL.to_vec(),
         problems: file.problems.to_vec(),
         tests: if wrong { Known::Missing(Missing::Errors) } else { tests(file)? },
         answers: match wish.answers {
@@ -121,11 +121,8 @@ fn all(file: &File, paper: Paper, wish: Wish) -> Result<Dossier, Said> {
 }
 
 fn tests(file: &File) -> Result<Known<Test>, Said> {
-    let options = testing::Options { record: true, ..testing::Options::default() };
-    let mut clock = VirtualClock::default();
-    let (outcomes, _) =
-        testing::file(&file.source, options, &mut Coverage::default(), &mut clock, &mut || {})
-            .map_err(|e| e.said())?;
+    let options = Options { record: true, ..Options::default() };
+    let (outcomes, _) = run(file, options, &mut Coverage::default())?;
     Ok(Known::Here(outcomes.into_iter().map(Test::from).collect()))
 }
 

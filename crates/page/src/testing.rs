@@ -68,7 +68,7 @@ struct Reached {
 pub(crate) struct Reasons {
     /// Why the names in the condition have their values.
     lines: Vec<WhyLine>,
-    /// The scans up to the failure; none where inputs alone do not lead there.
+    /// The scans up to the failure; none if the test also forces, writes or restarts.
     #[serde(skip_serializing_if = "Option::is_none")]
     run: Option<Vec<Scan>>,
 }
@@ -86,7 +86,8 @@ pub(crate) fn why(file: &File, title: &str) -> Result<Reasons, Said> {
     })
 }
 
-fn run(
+/// Runs the tests that the options choose.
+pub(crate) fn run(
     file: &File,
     options: Options<'_>,
     coverage: &mut Coverage,

@@ -93,6 +93,11 @@ impl Source {
         &self.links.others
     }
 
+    /// True if a place lies in a part of the library that this file uses.
+    pub fn is_of_library(&self, at: Span) -> bool {
+        self.others().iter().any(|o| o.library && o.source.id() == at.file)
+    }
+
     /// This file and all that it uses, without the parts of the library: their names and bytes.
     pub fn files(&self) -> impl Iterator<Item = (&str, &[u8])> {
         let used = self.links.others.iter().filter(|o| !o.library).map(|o| &*o.source);

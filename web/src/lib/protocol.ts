@@ -1023,7 +1023,7 @@ export type TestRow = { name: string; from: number; to: number; plant?: string }
 export type TestWhy = {
   /** Why the names in the condition have their values. */
   lines: Array<WhyLine>;
-  /** The scans up to the failure; none where inputs alone do not lead there. */
+  /** The scans up to the failure; none if the test also forces, writes or restarts. */
   run?: Array<ProofScan>;
 };
 

@@ -72,7 +72,7 @@ fn input(source: &Source, language: Language) -> Input<'_> {
         paper: Paper::default(),
         language,
         look: Look::default(),
-        parts: Part::ALL.iter().map(|(_, part)| *part).collect(),
+        parts: Part::ALL.to_vec(),
         problems: Vec::new(),
         tests: tests(source),
         answers: Known::Here(vec![answer]),

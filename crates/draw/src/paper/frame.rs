@@ -221,7 +221,7 @@ width=\"{pw}\" height=\"{ph}\"/>{}</g>{}</svg>\n",
     }
 }
 
-/// Draws the title block into the lower right corner of the frame.
+/// Draws the title block in the lower right corner of the frame.
 fn fields(p: &mut Picture, frame: Rect, b: &TitleBlock) {
     // The widths of the three columns in mm.
     const COLUMNS: [i32; 3] = [52, 92, 36];

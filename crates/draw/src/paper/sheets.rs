@@ -239,7 +239,7 @@ impl Filling<'_, '_> {
     }
 }
 
-/// Distance between a comment and what stands over it.
+/// Distance between a comment and the symbol or comment above it.
 const OVER_NOTE: i32 = 150;
 
 /// The height that a comment takes under the symbols.

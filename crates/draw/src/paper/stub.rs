@@ -21,7 +21,7 @@ pub(super) struct Token {
 pub(super) struct Stub {
     /// True if the links go on elsewhere, false if they come from there.
     pub(super) leaving: bool,
-    /// A double line of its own: no link of the transition stays on the sheet.
+    /// The stub draws the double line of its transition, since no other link of that side is drawn on this sheet.
     pub(super) double: bool,
     /// All links have one other end, which is named once.
     pub(super) once: bool,

@@ -123,7 +123,7 @@ fn faults(chart: &Chart, made: &[Sheet], paper: Paper, first: usize) -> Vec<Stri
     if pages.keys().cloned().collect::<BTreeSet<_>>() != symbols(chart) {
         faults.push("a symbol has no sheet".to_owned());
     }
-    // Each end has its partner, and names the sheet on which the partner stands.
+    // A link between two sheets has one end on each, and each end names the sheet of the other.
     let mut ends: BTreeMap<String, Vec<(bool, usize, usize)>> = BTreeMap::new();
     for (number, sheet) in (first..).zip(made) {
         for a in &sheet.away {

@@ -33,7 +33,7 @@ pub(crate) struct Dossier {
     #[arg(long, short, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// The sheets.
-    #[arg(long, value_enum, default_value_t = PaperName::A4, value_name = "PAPER")]
+    #[arg(long, value_enum, default_value_t = PaperName::default(), value_name = "PAPER")]
     pub(super) paper: PaperName,
     /// Only these parts, separated by commas.
     #[arg(long, value_enum, value_delimiter = ',', value_name = "PARTS")]

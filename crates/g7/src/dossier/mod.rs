@@ -31,7 +31,7 @@ pub(crate) fn dossier(args: &Dossier) -> Result<Verdict, Failure> {
     }
     let mut parts: Vec<Part> = args.part.iter().map(|p| p.part()).collect();
     if parts.is_empty() {
-        parts = Part::ALL.iter().map(|(_, p)| *p).collect();
+        parts = Part::ALL.to_vec();
     }
     let problems = problems(&source)?;
     let is_wrong = problems.iter().any(|p| p.severity() == Severity::Error);
@@ -44,7 +44,7 @@ pub(crate) fn dossier(args: &Dossier) -> Result<Verdict, Failure> {
     };
     let input = Input {
         head: args.heading.head(),
-        paper: args.paper.paper(),
+        paper: args.paper.0,
         language: language(),
         look: if args.sfc { g7_draw::Look::Sfc } else { g7_draw::Look::Iec60848 },
         views: views(&source),

@@ -1,34 +1,30 @@
 //! The sheets of paper, and the texts of their title block, as arguments.
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use g7_dossier::Head;
 use g7_draw::Paper;
 use g7_model::say;
 
 use crate::failure::Failure;
 
-/// A sheet of paper.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum PaperName {
-    /// A4, upright.
-    A4,
-    /// A4 on its side.
-    A4Landscape,
-    /// A3, upright.
-    A3,
-    /// A3 on its side.
-    A3Landscape,
-}
+/// A sheet of paper, by the name that [`Paper::ALL`] gives it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct PaperName(pub(crate) Paper);
 
-impl PaperName {
-    pub(crate) fn paper(self) -> Paper {
-        let [a4, a4_landscape, a3, a3_landscape] = Paper::ALL.map(|(_, paper)| paper);
-        match self {
-            PaperName::A4 => a4,
-            PaperName::A4Landscape => a4_landscape,
-            PaperName::A3 => a3,
-            PaperName::A3Landscape => a3_landscape,
-        }
+impl ValueEnum for PaperName {
+    fn value_variants<'a>() -> &'a [PaperName] {
+        const ALL: [PaperName; 4] = {
+            let [(_, a), (_, b), (_, c), (_, d)] = Paper::ALL;
+            [PaperName(a), PaperName(b), PaperName(c), PaperName(d)]
+        };
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
+        let (name, paper) = Paper::ALL.into_iter().find(|(_, paper)| *paper == self.0)?;
+        let how = if paper.landscape { " on its side" } else { ", upright" };
+        Some(PossibleValue::new(name).help(format!("{:?}{how}", paper.size)))
     }
 }
 

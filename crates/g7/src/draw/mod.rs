@@ -9,8 +9,10 @@ pub(crate) use pdf::pdf;
 
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
+use std::sync::LazyLock;
 
 use clap::ValueEnum;
+use clap::builder::PossibleValue;
 use g7_draw::{Look, Options, Page, Paper};
 use g7_model::{Chart, FileId, say};
 
@@ -90,29 +92,30 @@ enum Manner {
 }
 
 /// The pages on which charts stand.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Pages {
-    /// PL7: 14 lines and 11 columns.
+    /// The pages of PL7's editor.
     Pl7,
-    /// Sheets of A4, upright.
-    A4,
-    /// Sheets of A4 on their side.
-    A4Landscape,
-    /// Sheets of A3, upright.
-    A3,
-    /// Sheets of A3 on their side.
-    A3Landscape,
+    /// Sheets of paper.
+    Sheets(PaperName),
 }
 
-impl Pages {
-    /// The sheet of paper, if it is one.
-    fn paper(self) -> Option<PaperName> {
+impl ValueEnum for Pages {
+    fn value_variants<'a>() -> &'a [Pages] {
+        static ALL: LazyLock<Vec<Pages>> = LazyLock::new(|| {
+            let sheets = PaperName::value_variants().iter().map(|paper| Pages::Sheets(*paper));
+            std::iter::once(Pages::Pl7).chain(sheets).collect()
+        });
+        &ALL
+    }
+
+    fn to_possible_value(&self) -> Option<PossibleValue> {
         match self {
-            Pages::Pl7 => None,
-            Pages::A4 => Some(PaperName::A4),
-            Pages::A4Landscape => Some(PaperName::A4Landscape),
-            Pages::A3 => Some(PaperName::A3),
-            Pages::A3Landscape => Some(PaperName::A3Landscape),
+            Pages::Pl7 => Some(PossibleValue::new("pl7").help("PL7: 14 lines and 11 columns")),
+            Pages::Sheets(paper) => {
+                let how = if paper.0.landscape { " on their side" } else { ", upright" };
+                Some(paper.to_possible_value()?.help(format!("Sheets of {:?}{how}", paper.0.size)))
+            }
         }
     }
 }
@@ -144,8 +147,8 @@ pub(crate) fn draw(args: &Draw) -> Result<Verdict, Failure> {
     }
     let charts = chosen(args, &source)?;
     let options = options(args);
-    if let Some(paper) = args.pages.and_then(Pages::paper) {
-        on_sheets(args, &source, &charts, &options, paper.paper())?;
+    if let Some(Pages::Sheets(PaperName(paper))) = args.pages {
+        on_sheets(args, &source, &charts, &options, paper)?;
         return Ok(Verdict::Fine);
     }
     args.heading.refuse()?;
@@ -208,10 +211,10 @@ fn options(args: &Draw) -> Options {
 
 /// The chosen charts of a file and of those that it uses, in the order of the text.
 fn chosen<'a>(args: &Draw, source: &'a Source) -> Result<Vec<&'a Chart>, Failure> {
-    let of_library = |c: &&Chart| source.others().iter().any(|o| o.library && o.source.id() == c.at.0.file);
     let named = |c: &Chart| args.charts.iter().any(|n| *c.name.text == **n);
     // The frames of the library are drawn by name alone.
-    let all: Vec<&Chart> = source.whole().charts().filter(|c| !of_library(c) || named(c)).collect();
+    let all: Vec<&Chart> =
+        source.whole().charts().filter(|c| !source.is_of_library(c.at.0) || named(c)).collect();
     if let Some(name) = args.charts.iter().find(|n| !all.iter().any(|c| *c.name.text == ***n)) {
         let names: Vec<&str> = all.iter().map(|c| &*c.name.text).collect();
         let (file, names) = (&source.name, names.join(", "));

@@ -14,7 +14,7 @@ use crate::files;
 /// Points in a millimetre.
 const POINTS: f32 = 72.0 / 25.4;
 
-/// The numbers of the objects of a file.
+/// Gives each object of the PDF a number of its own.
 struct Numbers {
     next: Ref,
 }
@@ -100,7 +100,7 @@ fn whole(paper: Paper) -> [f32; 4] {
 /// Width, height, left and lower edge of a box of a sheet, in points.
 fn points(paper: Paper, at: Box) -> [f32; 4] {
     let point = |n: i32| n as f32 / MM as f32 * POINTS;
-    let [_, _, h] = [0.0, 0.0, whole(paper)[1]];
+    let [_, h, ..] = whole(paper);
     [point(at.w), point(at.h), point(at.x), h - point(at.y + at.h)]
 }
 

@@ -207,15 +207,11 @@ impl File<'_> {
         let drawn = run.zip(self.drawer.as_ref());
         let guilt = run.map(|run| guilt::guilt(model, &question.claim, run)).unwrap_or_default();
         let chronogram =
-            drawn.map(|(run, d)| d.draw(&run.moves, &format!("{claim} {guilt}"))).unwrap_or_default();
+            drawn.map(|(run, d)| d.draw(&run.moves, &format!("{claim} {}", guilt.said))).unwrap_or_default();
         let scans = drawn.map(|(run, d)| d.scans(&run.moves)).unwrap_or_default();
-        let why = drawn.map(|(run, d)| {
-            let guilty = guilt::names(model, &question.claim, run);
-            if guilty.is_empty() {
-                d.why(&run.moves, &trace::names(written))
-            } else {
-                d.why(&run.moves, &guilty)
-            }
+        let why = drawn.map(|(run, d)| match guilt.names.as_slice() {
+            [] => d.why(&run.moves, &trace::names(written)),
+            names => d.why(&run.moves, names),
         });
         let time = match verdict {
             Verdict::Proved(Evidence::Run(run)) | Verdict::Refuted(Evidence::Run(run)) => {
@@ -233,7 +229,7 @@ impl File<'_> {
             claim,
             own: question.claim.is_own(),
             reason,
-            guilt,
+            guilt: guilt.said,
             help,
             verdict: verdict.clone(),
             chronogram,

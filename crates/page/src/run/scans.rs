@@ -33,7 +33,8 @@ impl Scan {
         scans
     }
 
-    /// The scans up to the failure of a test; none where inputs alone do not lead there.
+    /// The scans of a failed test up to its failure. None if the test also forces, writes or restarts: the inputs alone then do not
+    /// repeat it.
     pub(crate) fn up_to(defect: &Defect) -> Option<Vec<Scan>> {
         let moves = defect.inputs.iter().map(|inputs| Move { inputs: inputs.clone(), wait: 0 });
         let moves: Vec<Move> = moves.collect();
