@@ -134,6 +134,8 @@ test('a file that was changed meanwhile is not written over: the user is asked',
   await asked.getByRole('button', { name: 'Keep mine' }).click();
   await page.keyboard.press('Control+s');
   await until(() => Promise.resolve(disk() === `// mine\n${TEXT}`), 'it is not saved');
+  // The page has its answer: a save that is not answered is kept to be saved again.
+  await dirty(page).waitFor({ state: 'detached' });
   // Without a change here, the text of the disk comes in by itself.
   await kill(page);
   writeFileSync(join(folder, 'loop.g7'), theirs);

@@ -55,21 +55,22 @@ fn picture(flow: &mut Flow, input: &Input<'_>, file: &str) {
 /// The size of an SVG file: that of its view box, or its width and height.
 fn size(svg: &[u8]) -> Option<[f64; 2]> {
     let text = std::str::from_utf8(svg).ok()?;
-    let tag = text.split_once("<svg")?.1.split('>').next()?;
-    let attribute = |name: &str| {
-        let from = tag.find(&format!("{name}=")).map(|at| at + name.len() + 1)?;
-        let quote = tag.get(from..)?.chars().next().filter(|c| matches!(c, '"' | '\''))?;
-        tag.get(from + 1..)?.split(quote).next()
-    };
-    let numbers = |text: &str| -> Vec<f64> {
-        text.split([' ', ',']).filter(|t| !t.is_empty()).filter_map(|t| t.trim().parse().ok()).collect()
-    };
-    let good = |w: f64, h: f64| (w > 0.0 && h > 0.0 && w.is_finite() && h.is_finite()).then_some([w, h]);
-    if let Some([_, _, w, h]) = attribute("viewBox").map(numbers).as_deref() {
-        return good(*w, *h);
+    // Drawing programs write a document type, which the reader refuses unless it is asked for.
+    let options = roxmltree::ParsingOptions { allow_dtd: true, ..roxmltree::ParsingOptions::default() };
+    let document = roxmltree::Document::parse_with_options(text, options).ok()?;
+    let root = document.root_element();
+    if root.tag_name().name() != "svg" {
+        return None;
     }
-    let length = |name| attribute(name)?.trim_end_matches("px").parse::<f64>().ok();
-    good(length(" width")?, length(" height")?)
+    let number = |text: &str| text.trim().trim_end_matches("px").parse::<f64>().ok();
+    let good = |w: f64, h: f64| (w > 0.0 && h > 0.0 && w.is_finite() && h.is_finite()).then_some([w, h]);
+    if let Some(seen) = root.attribute("viewBox") {
+        let numbers = seen.split([' ', ',']).filter(|t| !t.trim().is_empty()).filter_map(number);
+        if let [_, _, w, h] = *numbers.collect::<Vec<_>>() {
+            return good(w, h);
+        }
+    }
+    good(number(root.attribute("width")?)?, number(root.attribute("height")?)?)
 }
 
 /// The tests with their results.
@@ -236,4 +237,30 @@ pub(crate) fn problems(flow: &mut Flow, input: &Input<'_>) {
         ]);
     }
     table.write(flow);
+}
+
+#[cfg(test)]
+mod tests {
+    #[test]
+    fn the_size_is_that_of_the_root_whatever_stands_before_and_in_it() {
+        let size = |text: &str| super::size(text.as_bytes());
+        let open = "xmlns='http://www.w3.org/2000/svg'";
+        assert_eq!(size(&format!("<svg {open} viewBox='0 0 30,20'/>")), Some([30.0, 20.0]));
+        assert_eq!(size(&format!("<svg {open} width='40px' height='10'/>")), Some([40.0, 10.0]));
+        let commented =
+            format!("<!-- <svg viewBox='0 0 1 1'> --><svg {open} data-a='>' viewBox='0 0 30 20'/>");
+        assert_eq!(size(&commented), Some([30.0, 20.0]));
+        assert_eq!(size(&format!("<!DOCTYPE svg><svg {open} viewBox='0 0 3 2'/>")), Some([3.0, 2.0]));
+        for bad in [
+            "",
+            "no picture",
+            "<svg",
+            "<html/>",
+            "<svg/>",
+            "<svg viewBox='0 0 0 5'/>",
+            "<svg width='a' height='1'/>",
+        ] {
+            assert_eq!(size(bad), None, "{bad}");
+        }
+    }
 }

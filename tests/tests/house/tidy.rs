@@ -52,7 +52,7 @@ const ALLOWED: &[Arrows] = &[
     ("opcua", &["g7-model", "g7-host", "g7-store", "g7-online"], None),
     ("store", &["g7-model", "g7-host"], None),
     ("draw", &["g7-model"], Some(&[])),
-    ("dossier", &["g7-model", "g7-compile", "g7-host", "g7-rig", "g7-ide", "g7-draw"], Some(&[])),
+    ("dossier", &["g7-model", "g7-compile", "g7-host", "g7-rig", "g7-ide", "g7-draw"], Some(&["roxmltree"])),
     ("edit", &["g7-model", "g7-syntax", "g7-compile"], Some(&["serde", "ts-rs"])),
     (
         "rig",

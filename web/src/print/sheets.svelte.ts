@@ -1,5 +1,6 @@
 // The sheets of the print preview: what is printed, on which paper, and the pages that the program makes of it.
 import { files, type OpenFile } from '../lib/files.svelte';
+import { said } from '../lib/i18n';
 import { page } from '../lib/page';
 import { prefs } from '../lib/prefs.svelte';
 import { proofs } from '../lib/proofs.svelte';
@@ -26,7 +27,6 @@ class Sheets {
   async make(file: OpenFile, chart: string): Promise<void> {
     const turn = ++this.#turn;
     const dossier = this.what === 'dossier';
-    // All that an effect has to follow is read before the first wait.
     const wish = {
       paper: prefs.paper,
       charts: this.what === 'chart' ? [chart] : file.look.charts.map((c) => c.name),
@@ -64,8 +64,7 @@ class Sheets {
 
 /** The answers of the panel *Prove* about the present text, in the language of the page. */
 function answers(): SheetsAnswer[] | undefined {
-  const language = { en: 0, fr: 1, pt: 2 }[prefs.language] as 0 | 1 | 2;
-  return proofs.present?.rows.map((r) => ({ claim: r.claim[language], verdict: r.verdict, reason: r.reason[language], help: r.help[language], line: r.line, own: r.own }));
+  return proofs.present?.rows.map((r) => ({ claim: said(r.claim), verdict: r.verdict, reason: said(r.reason), help: said(r.help), line: r.line, own: r.own }));
 }
 
 async function picturesOf(file: OpenFile): Promise<Shelved[]> {
