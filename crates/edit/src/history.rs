@@ -1,23 +1,27 @@
-//! Unlimited undo and redo: each change is kept together with its inverse.
+//! Unlimited undo and redo: each change is kept as the splices that take it back.
 //!
-//! Undoing everything restores the first text byte for byte, and redoing everything the last one.
+//! Undoing everything restores the first text byte for byte, and redoing everything the last one. Changes of other
+//! people (decision 086) are no units: the units are moved over them, so that undo takes back what was done here
+//! and leaves the rest as it is.
 
-use crate::splice::{Splice, inverse};
+use crate::splice::{Splice, inverse, over};
 
-/// One step of undo.
+/// The last change that was typed. The next key may extend it.
 #[derive(Clone, Debug)]
-struct Unit {
+struct Typed {
     there: Vec<Splice>,
-    back: Vec<Splice>,
-    /// True if the user typed it; the next key may then extend it.
-    typed: bool,
 }
 
 /// The changes of a text, and those that were undone.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    done: Vec<Unit>,
-    undone: Vec<Unit>,
+    /// What takes each change back. The last one fits the present text, each other one the text after the next
+    /// one was taken back.
+    done: Vec<Vec<Splice>>,
+    /// What makes each undone change again, in the same order.
+    undone: Vec<Vec<Splice>>,
+    /// The last of `done`, if the user typed it and may go on.
+    typed: Option<Typed>,
 }
 
 impl History {
@@ -29,36 +33,45 @@ impl History {
             return true;
         }
         self.undone.clear();
-        let unit = Unit { there: splices.to_vec(), back, typed };
-        let joined = typed && self.done.last_mut().is_some_and(|last| join(last, &unit));
-        if !joined {
-            self.done.push(unit);
+        let next = Typed { there: splices.to_vec() };
+        if typed
+            && let (Some(last), Some(last_back)) = (&mut self.typed, self.done.last_mut())
+            && join(&mut last.there, last_back, &next.there, &back)
+        {
+            return true;
         }
+        self.done.push(back);
+        self.typed = typed.then_some(next);
         true
     }
 
-    /// Undoes the last change: returns the splices for the present text.
-    pub fn undo(&mut self) -> Option<Vec<Splice>> {
-        let unit = self.done.pop()?;
-        let back = unit.back.clone();
-        self.undone.push(unit);
-        Some(back)
+    /// Undoes the last change of `text`: returns the splices for it.
+    pub fn undo(&mut self, text: &str) -> Option<Vec<Splice>> {
+        self.typed = None;
+        travel(text, &mut self.done, &mut self.undone)
     }
 
-    /// Redoes the change that was undone last: returns the splices for the present text.
-    pub fn redo(&mut self) -> Option<Vec<Splice>> {
-        let mut unit = self.undone.pop()?;
-        unit.typed = false;
-        let there = unit.there.clone();
-        self.done.push(unit);
-        Some(there)
+    /// Redoes the change of `text` that was undone last: returns the splices for it.
+    pub fn redo(&mut self, text: &str) -> Option<Vec<Splice>> {
+        travel(text, &mut self.undone, &mut self.done)
+    }
+
+    /// The splices that `undo` would return.
+    pub fn last(&self) -> Option<&[Splice]> {
+        self.done.last().map(Vec::as_slice)
+    }
+
+    /// Moves all units over a change of the text that somebody else has made. A unit of which nothing is left, such as the
+    /// undo of a word that is gone, is dropped.
+    pub fn others(&mut self, splices: &[Splice]) {
+        self.pause();
+        move_over(&mut self.done, splices);
+        move_over(&mut self.undone, splices);
     }
 
     /// Ends the present step of undo: the next key starts a new one.
     pub fn pause(&mut self) {
-        if let Some(last) = self.done.last_mut() {
-            last.typed = false;
-        }
+        self.typed = None;
     }
 
     /// True if there is a change to undo.
@@ -72,14 +85,27 @@ impl History {
     }
 }
 
-/// Extends the last step of undo by a key if both belong to one word.
-fn join(last: &mut Unit, next: &Unit) -> bool {
-    if !last.typed {
-        return false;
+/// Takes the last unit of one side to the other.
+fn travel(text: &str, from: &mut Vec<Vec<Splice>>, to: &mut Vec<Vec<Splice>>) -> Option<Vec<Splice>> {
+    let splices = from.pop()?;
+    to.push(inverse(text, &splices)?);
+    Some(splices)
+}
+
+/// Moves the units of one side over a change of the present text.
+fn move_over(units: &mut Vec<Vec<Splice>>, splices: &[Splice]) {
+    let mut splices = splices.to_vec();
+    for unit in units.iter_mut().rev() {
+        let moved = over(unit, &splices, false);
+        splices = over(&splices, unit, true);
+        *unit = moved;
     }
-    let ([l], [lb], [n], [nb]) =
-        (last.there.as_mut_slice(), last.back.as_mut_slice(), next.there.as_slice(), next.back.as_slice())
-    else {
+    units.retain(|unit| !unit.is_empty());
+}
+
+/// Extends the last step of undo by a key if both belong to one word.
+fn join(there: &mut [Splice], back: &mut [Splice], next: &[Splice], next_back: &[Splice]) -> bool {
+    let ([l], [lb], [n], [nb]) = (there, back, next, next_back) else {
         return false;
     };
     let one = |s: &str| !s.is_empty() && !s.contains(char::is_whitespace);
@@ -115,7 +141,7 @@ mod tests {
     }
 
     fn undo(text: &mut String, history: &mut History) {
-        let back = history.undo().expect("something to undo");
+        let back = history.undo(text).expect("something to undo");
         *text = spliced(text, &back).expect("it fits");
     }
 
@@ -131,7 +157,7 @@ mod tests {
             assert_eq!(text, left);
         }
         assert!(!history.can_undo());
-        while let Some(there) = history.redo() {
+        while let Some(there) = history.redo(&text) {
             text = spliced(&text, &there).expect("it fits");
         }
         assert_eq!(text, "aso itb");
@@ -148,7 +174,7 @@ mod tests {
             undo(&mut text, &mut history);
             assert_eq!(text, "abcd!");
             assert!(!history.can_undo());
-            let there = history.redo().expect("something to redo");
+            let there = history.redo(&text).expect("something to redo");
             assert_eq!(spliced(&text, &there).as_deref(), Some("a!"));
         }
     }
@@ -163,6 +189,68 @@ mod tests {
         for left in ["ab", "a", ""] {
             undo(&mut text, &mut history);
             assert_eq!(text, left);
+        }
+    }
+    #[test]
+    fn undo_takes_back_what_was_done_here_and_leaves_the_work_of_others() {
+        let (mut text, mut history) = ("one three".to_owned(), History::default());
+        let others = |text: &mut String, history: &mut History, splices: &[Splice]| {
+            history.others(splices);
+            *text = spliced(text, splices).expect("it fits");
+        };
+        play(&mut text, &mut history, &[Splice::new(4, 4, "two ")], false);
+        play(&mut text, &mut history, &[Splice::new(0, 3, "1")], false);
+        others(&mut text, &mut history, &[Splice::new(1, 1, "!"), Splice::new(11, 11, " four")]);
+        assert_eq!(text, "1! two three four");
+        undo(&mut text, &mut history);
+        assert_eq!(text, "one! two three four");
+        others(&mut text, &mut history, &[Splice::new(0, 0, "> ")]);
+        undo(&mut text, &mut history);
+        assert_eq!(text, "> one! three four");
+        for now in ["> one! two three four", "> 1! two three four"] {
+            let there = history.redo(&text).expect("something to redo");
+            text = spliced(&text, &there).expect("it fits");
+            assert_eq!(text, now);
+        }
+    }
+
+    #[test]
+    fn a_unit_of_which_nothing_is_left_is_dropped() {
+        let (mut text, mut history) = ("ab".to_owned(), History::default());
+        play(&mut text, &mut history, &[Splice::new(1, 1, "x")], true);
+        history.others(&[Splice::new(0, 3, "")]);
+        assert!(!history.can_undo());
+    }
+    #[test]
+    fn all_that_is_undone_beside_others_can_be_redone() {
+        let mut seed = 7u64;
+        let mut numbers = |below: usize| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as usize % below
+        };
+        for _ in 0..300 {
+            let (mut text, mut history) = ("abcdefghij".to_owned(), History::default());
+            for _ in 0..30 {
+                let (a, b) = (numbers(text.len() + 1), numbers(text.len() + 1));
+                let mine = numbers(2) == 0;
+                let splice =
+                    Splice::new(a.min(b), a.max(b).min(a.min(b) + 4), if mine { "mm" } else { "TT" });
+                if mine {
+                    play(&mut text, &mut history, &[splice], numbers(2) == 0);
+                } else {
+                    history.others(std::slice::from_ref(&splice));
+                    text = spliced(&text, &[splice]).expect("it fits");
+                }
+            }
+            let now = text.clone();
+            while history.can_undo() {
+                undo(&mut text, &mut history);
+            }
+            assert!(!text.contains('m'), "{text} has what was undone");
+            while let Some(there) = history.redo(&text) {
+                text = spliced(&text, &there).expect("it fits");
+            }
+            assert_eq!(text, now);
         }
     }
 }

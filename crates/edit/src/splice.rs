@@ -55,6 +55,76 @@ pub(crate) fn inverse(text: &str, splices: &[Splice]) -> Option<Vec<Splice>> {
     Some(back)
 }
 
+/// The splices with the same effect on a text that `others` have changed before: both lists are for one text. What
+/// both delete is deleted once, and what the others insert stays. Where both insert at one place, the text of these splices stands
+/// before that of the others if it is `first`.
+///
+/// For lists `a` and `b` of one text, `a` and then `over(b, a, false)` gives the same text as `b` and then
+/// `over(a, b, true)`.
+pub(crate) fn over(splices: &[Splice], others: &[Splice], first: bool) -> Vec<Splice> {
+    let mut out: Vec<Splice> = Vec::with_capacity(splices.len());
+    // The others that end before the present place, and what they have added to it.
+    let (mut next, mut shift) = (0, 0isize);
+    for s in splices {
+        while let Some(o) = others.get(next)
+            && (o.end < s.start || o.end == s.start && (o.start < o.end || !first))
+        {
+            shift += growth(o);
+            next += 1;
+        }
+        let at = moved(s.start, others.get(next), shift, first);
+        put(&mut out, Splice::new(at, at, s.insert.clone()));
+        cut(&mut out, s.start..s.end, &others[next..], shift);
+    }
+    out
+}
+
+/// The bytes that a splice adds to its text.
+fn growth(s: &Splice) -> isize {
+    s.insert.len() as isize - (s.end - s.start) as isize
+}
+
+/// A place behind `shift` more bytes. Inside a range that the next one of the others replaces, it is behind the new text, which
+/// stands at the begin of that range; at that begin itself, `first` decides.
+fn moved(at: usize, next: Option<&Splice>, shift: isize, first: bool) -> usize {
+    match next {
+        Some(o) if o.start < at || o.start == at && o.start < o.end && !first => {
+            o.start.saturating_add_signed(shift) + o.insert.len()
+        }
+        _ => at.saturating_add_signed(shift),
+    }
+}
+
+/// Adds the deletion of a range, without what `others` delete in it.
+fn cut(out: &mut Vec<Splice>, range: std::ops::Range<usize>, others: &[Splice], mut shift: isize) {
+    let mut at = range.start;
+    for o in others {
+        if o.start >= range.end {
+            break;
+        }
+        if at < o.start {
+            put(out, Splice::new(at.saturating_add_signed(shift), o.start.saturating_add_signed(shift), ""));
+        }
+        at = at.max(o.end);
+        shift += growth(o);
+    }
+    if at < range.end {
+        put(out, Splice::new(at.saturating_add_signed(shift), range.end.saturating_add_signed(shift), ""));
+    }
+}
+
+/// Adds a splice behind the others, joined with the last one if they touch.
+fn put(out: &mut Vec<Splice>, s: Splice) {
+    match out.last_mut() {
+        Some(last) if last.end == s.start => {
+            last.end = s.end;
+            last.insert.push_str(&s.insert);
+        }
+        _ if s.start == s.end && s.insert.is_empty() => {}
+        _ => out.push(s),
+    }
+}
+
 /// A piece of a changed text: kept text, by its place in the text before, or new text.
 enum Piece {
     Kept(usize, usize),
@@ -168,7 +238,7 @@ fn trimmed(text: &str, mut s: Splice) -> Option<Splice> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Splice, composed, inverse, spliced, tidied};
+    use super::{Splice, composed, inverse, over, spliced, tidied};
 
     #[test]
     fn the_inverse_leads_back() {
@@ -216,5 +286,51 @@ mod tests {
         let tidy = tidied("a -> b", vec![Splice::new(0, 6, "a -> c"), Splice::new(0, 0, "")]);
         assert_eq!(tidy, [Splice::new(5, 6, "c")]);
         assert_eq!(tidied("abc", vec![Splice::new(0, 3, "abc")]), []);
+    }
+    /// Splices of a text of this length, drawn from a row of numbers.
+    fn drawn(length: usize, name: &str, numbers: &mut impl FnMut(usize) -> usize) -> Vec<Splice> {
+        let mut places: Vec<usize> = (0..2 * numbers(4)).map(|_| numbers(length + 1)).collect();
+        places.sort_unstable();
+        let mut found = Vec::new();
+        for (k, pair) in places.chunks_exact(2).enumerate() {
+            let end = if numbers(3) == 0 { pair[0] } else { pair[1] };
+            found.push(Splice::new(pair[0], end, name.repeat(numbers(3)) + &k.to_string()));
+        }
+        found
+    }
+
+    #[test]
+    fn two_changes_in_either_order_give_one_text() {
+        let mut seed = 1u64;
+        let mut numbers = |below: usize| {
+            seed = seed.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (seed >> 33) as usize % below
+        };
+        for _ in 0..20_000 {
+            let text = "abcdefghij";
+            let mine = drawn(text.len(), "M", &mut numbers);
+            let theirs = drawn(text.len(), "T", &mut numbers);
+            let after = |first: &[Splice], then: &[Splice]| {
+                let text = spliced(text, first).expect("they fit");
+                spliced(&text, then).expect("they fit too")
+            };
+            let a = after(&theirs, &over(&mine, &theirs, false));
+            let b = after(&mine, &over(&theirs, &mine, true));
+            assert_eq!(a, b, "{mine:?} {theirs:?}");
+            for s in mine.iter().chain(&theirs) {
+                assert!(a.contains(&s.insert), "{a} lacks what was inserted: {mine:?} {theirs:?}");
+            }
+            let kept = |list: &[Splice], at: usize| !list.iter().any(|s| s.start <= at && at < s.end);
+            let left: String = text
+                .char_indices()
+                .filter(|&(k, _)| kept(&mine, k) && kept(&theirs, k))
+                .map(|(_, c)| c)
+                .collect();
+            assert_eq!(
+                a.chars().filter(|c| text.contains(*c)).collect::<String>(),
+                left,
+                "{mine:?} {theirs:?}"
+            );
+        }
     }
 }

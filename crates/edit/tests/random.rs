@@ -308,11 +308,11 @@ fn play(seed: u64, first: &str, length: usize) -> usize {
         }
     }
     let last = text.clone();
-    while let Some(back) = history.undo() {
+    while let Some(back) = history.undo(&text) {
         text = spliced(&text, &back).expect("what is undone fits");
     }
     assert_eq!(text, first, "seed {seed}: undone");
-    while let Some(there) = history.redo() {
+    while let Some(there) = history.redo(&text) {
         text = spliced(&text, &there).expect("what is done again fits");
     }
     assert_eq!(text, last, "seed {seed}: done again");

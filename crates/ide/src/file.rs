@@ -93,6 +93,14 @@ impl File {
         self.splice(splices)
     }
 
+    /// Makes a change of somebody else, which undo here does not take back (decision 086).
+    pub fn change_of_others(&mut self, splices: &[Splice]) -> Result<(), Said> {
+        self.fits(splices)?;
+        self.splice(splices)?;
+        self.history.others(splices);
+        Ok(())
+    }
+
     /// Makes the change of a gesture. What the gesture has read of the new text is not read again.
     #[inline(never)]
     pub fn make(&mut self, edit: &mut Edit) -> Result<(), Said> {
@@ -108,13 +116,19 @@ impl File {
         }
     }
 
-    /// Records a change that is about to be made.
-    fn recorded(&mut self, splices: &[Splice], typed: bool) -> Result<(), Said> {
+    /// Refuses a change that would make the text too large.
+    fn fits(&self, splices: &[Splice]) -> Result<(), Said> {
         let more: usize = splices.iter().map(|s| s.insert.len()).sum();
         let less: usize = splices.iter().map(|s| s.end.saturating_sub(s.start)).sum();
         if (self.text().len() + more).saturating_sub(less) > MOST {
             return Err(too_large());
         }
+        Ok(())
+    }
+
+    /// Records a change that is about to be made.
+    fn recorded(&mut self, splices: &[Splice], typed: bool) -> Result<(), Said> {
+        self.fits(splices)?;
         if !self.history.record(&self.source.text, splices, typed) {
             return Err(say!("these places are none of the text"));
         }
@@ -132,7 +146,8 @@ impl File {
 
     /// Undoes the last change, or redoes it; returns the splices.
     pub fn travel(&mut self, back: bool) -> Result<Vec<Splice>, Said> {
-        let splices = if back { self.history.undo() } else { self.history.redo() };
+        let text = &self.source.text;
+        let splices = if back { self.history.undo(text) } else { self.history.redo(text) };
         let nothing = || if back { say!("nothing to undo") } else { say!("nothing to redo") };
         let splices = splices.ok_or_else(nothing)?;
         self.splice(&splices).map_err(|_| say!("the history does not fit the text"))?;
@@ -141,8 +156,7 @@ impl File {
 
     /// The text before the last change, if there was one.
     pub fn before(&self) -> Option<String> {
-        let splices = self.history.clone().undo()?;
-        spliced(self.text(), &splices)
+        spliced(self.text(), self.history.last()?)
     }
 
     /// Changes the text. The form was decided when the file was opened: an imported file keeps its name,

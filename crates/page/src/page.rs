@@ -254,10 +254,20 @@ impl Answers for Page {
         Ok(Text { text: self.file(&file)?.text().to_owned() })
     }
 
-    fn splice(&mut self, file: String, splices: Vec<Change>, unit: bool) -> Result<Overview, Said> {
+    fn splice(
+        &mut self,
+        file: String,
+        splices: Vec<Change>,
+        unit: bool,
+        others: bool,
+    ) -> Result<Overview, Said> {
         let open = self.file_mut(&file)?;
         let splices = inward(open, &splices);
-        open.change(&splices, !unit)?;
+        if others {
+            open.change_of_others(&splices)?;
+        } else {
+            open.change(&splices, !unit)?;
+        }
         self.shelve(&file);
         self.look(file)
     }

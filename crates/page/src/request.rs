@@ -89,13 +89,16 @@ requests! {
 
     fn text(file: String) -> Text;
 
-    /// Changes the text as it is typed. A unit is undone alone.
+    /// Changes the text as it is typed. A unit is undone alone; a change of others is not undone here.
     fn splice(
         file: String,
         splices: Vec<Change>,
         #[serde(default)]
         #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
         unit: bool,
+        #[serde(default)]
+        #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
+        others: bool,
     ) -> Overview;
 
     /// Executes a gesture.
