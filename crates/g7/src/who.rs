@@ -13,17 +13,30 @@ pub(crate) struct Who {
     pub(crate) from: String,
     /// The session, where there are users.
     pub(crate) session: Option<SessionHash>,
+    /// True for whoever has the address for guests.
+    pub(crate) guest: bool,
 }
 
 impl Who {
     /// The one at the terminal, who has started it all.
     pub(crate) fn console() -> Who {
-        Who { name: String::new(), role: Role::Admin, from: "console".to_owned(), session: None }
+        Who {
+            name: String::new(),
+            role: Role::Admin,
+            from: "console".to_owned(),
+            session: None,
+            guest: false,
+        }
     }
 
     /// Whoever has the token of this start.
     pub(crate) fn with_token(from: String) -> Who {
-        Who { name: String::new(), role: Role::Admin, from, session: None }
+        Who { name: String::new(), role: Role::Admin, from, session: None, guest: false }
+    }
+
+    /// Whoever has the address for guests: looks at everything and changes nothing. No user has this name.
+    pub(crate) fn guest(from: String) -> Who {
+        Who { name: "(guest)".to_owned(), role: Role::Viewer, from, session: None, guest: true }
     }
 
     /// Refuses what needs a greater role.

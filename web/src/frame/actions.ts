@@ -6,6 +6,7 @@ import { page } from '../lib/page';
 import { base } from '../lib/paths';
 import { Conflict, Gone, server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
+import { together } from '../together/together.svelte';
 
 /** A first file: one chart with one step, on which the user can build. */
 const FIRST = 'chart G1 {\n  initial step 0\n}\n';
@@ -24,6 +25,7 @@ export async function save(file: OpenFile): Promise<void> {
 export async function put(file: OpenFile, text: string): Promise<void> {
   try {
     await files.save(file, text);
+    together.saved(file);
     shell.say(t('app.saved', { name: file.name }));
   } catch (error) {
     if (error instanceof Gone && text !== file.saved) {
@@ -108,6 +110,7 @@ export async function takeTheirs(file: OpenFile): Promise<void> {
   file.saved = outside.text;
   file.tag = outside.hash;
   file.outside = null;
+  together.saved(file);
 }
 
 /** Merges both versions if they changed different lines; otherwise the question stays. */
@@ -126,6 +129,7 @@ export async function mergeBoth(file: OpenFile): Promise<void> {
   file.saved = outside.text;
   file.tag = outside.hash;
   file.outside = null;
+  together.saved(file);
   shell.say(t('app.outside.merged'));
 }
 
@@ -135,4 +139,5 @@ export function keepMine(file: OpenFile): void {
   file.saved = file.outside.text;
   file.tag = file.outside.hash;
   file.outside = null;
+  together.saved(file);
 }

@@ -5,6 +5,7 @@ import { t } from '../lib/i18n';
 import { runs } from '../lib/runs.svelte';
 import { server } from '../lib/server';
 import { shell } from '../lib/shell.svelte';
+import { together } from '../together/together.svelte';
 import { put } from './actions';
 
 /** Saves the texts whose saving waits. */
@@ -30,7 +31,7 @@ export async function back(): Promise<void> {
   shell.say(t('gone.back'));
   shell.folder = (await server.files().catch(() => null)) ?? shell.folder;
   await saveWaiting();
-  for (const file of files.list) if (file.tag !== null && !file.outside) await lookAt(file);
+  for (const file of files.list) if (file.tag !== null && !file.outside && !together.of(file)) await lookAt(file);
   // The server gets the copies that the browser has kept meanwhile.
   for (const file of files.list) if (file.changed) await drafts.keep(file.name, { text: file.text, base: file.tag ?? '' });
   await drafts.look();

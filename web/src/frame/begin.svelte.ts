@@ -11,6 +11,7 @@ import { shell } from '../lib/shell.svelte';
 import { runs } from '../lib/runs.svelte';
 import { carries } from '../share/links';
 import { openAddress } from '../share/parcels';
+import { together } from '../together/together.svelte';
 import { back, lookAt, saveWaiting } from './back';
 import { recover } from './recover';
 
@@ -41,6 +42,7 @@ export async function begin(): Promise<void> {
   if (!embedded) await recover();
   // Behind that, because unsaved work may have the name of a file in the link, and stays.
   await shell.try(openAddress);
+  await shell.try(() => together.begin());
   shell.ready = true;
   addEventListener('hashchange', () => void shell.try(openAddress));
   if (!embedded) await saveWaiting();
@@ -52,7 +54,9 @@ async function changedOutside({ path, hash }: Changed): Promise<void> {
   shell.folder = (await shell.try(() => server.files())) ?? shell.folder;
   const file = files.find(path);
   if (!file) return files.outside(path);
-  if (file.tag !== hash) await lookAt(file);
+  if (file.tag === hash || (await together.outside(file, hash))) return;
+  await lookAt(file);
+  if (!file.outside) together.saved(file);
 }
 
 /** Keeps copies of unsaved work, one second after a change; call once, inside a component. */

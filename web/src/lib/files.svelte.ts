@@ -2,14 +2,14 @@
 // there while an answer is on its way are rebased on each other.
 import { ChangeSet, type Text } from '@codemirror/state';
 import { drafts } from './drafts.svelte';
-import { page, type Message } from './page';
+import { page, Refused, type Message } from './page';
 import { prefs } from './prefs.svelte';
 import type { Edited, Gesture, Look, Problem, Shelved, Splice } from './protocol';
 import { Redraws, type Drawing } from './redrawn';
 import { Conflict, server } from './server';
 
 /** The origin of a change; a listener that made the change itself can ignore it. */
-export type Origin = 'text' | 'structure' | 'history' | 'disk';
+export type Origin = 'text' | 'structure' | 'history' | 'disk' | 'others';
 
 export interface TextChange {
   splices: Splice[];
@@ -22,11 +22,13 @@ interface Typed {
   changes: ChangeSet;
   /** True if it is undone as a unit of its own. */
   unit: boolean;
+  /** True for a change of somebody else, which is not undone here. */
+  others: boolean;
 }
 
-const asSpecs = (splices: Splice[]) => splices.map((s) => ({ from: s.from, to: s.to, insert: s.insert }));
+export const asSpecs = (splices: Splice[]) => splices.map((s) => ({ from: s.from, to: s.to, insert: s.insert }));
 
-function asSplices(changes: ChangeSet): Splice[] {
+export function asSplices(changes: ChangeSet): Splice[] {
   const found: Splice[] = [];
   changes.iterChanges((from, to, _a, _b, insert: Text) => {
     found.push({ from, to, insert: insert.toString() });
@@ -34,7 +36,7 @@ function asSplices(changes: ChangeSet): Splice[] {
   return found;
 }
 
-function apply(text: string, splices: Splice[]): string {
+export function apply(text: string, splices: Splice[]): string {
   let out = '';
   let at = 0;
   for (const s of splices) {
@@ -42,6 +44,16 @@ function apply(text: string, splices: Splice[]): string {
     at = s.to;
   }
   return out + text.slice(at);
+}
+
+/** The change that makes one text of another: what differs, as one splice. */
+export function between(now: string, text: string): Splice[] {
+  const most = Math.min(now.length, text.length);
+  let from = 0;
+  while (from < most && now[from] === text[from]) from++;
+  let tail = 0;
+  while (tail < most - from && now[now.length - 1 - tail] === text[text.length - 1 - tail]) tail++;
+  return now === text ? [] : [{ from, to: now.length - tail, insert: text.slice(from, text.length - tail) }];
 }
 
 export class OpenFile {
@@ -59,6 +71,8 @@ export class OpenFile {
   waits: string | null = $state.raw(null);
   /** Its text is unsaved work of an earlier time. */
   recovered = $state(false);
+  /** Why it cannot be changed here now, if so. */
+  locked: string | null = $state(null);
 
   #listeners = new Set<Listener>();
   /** Typed changes that are not sent yet; each is relative to the text after those before it. */
@@ -104,6 +118,11 @@ export class OpenFile {
   /** Applies a change that was offered, as an edit of its own. */
   fix(splices: Splice[]): Promise<void> {
     return this.#put(splices, true, 'structure');
+  }
+
+  /** Makes a change of somebody else, which is not undone here. */
+  others(splices: Splice[]): Promise<void> {
+    return this.#put(splices, true, 'others');
   }
 
   /** Waits until no change is under way: the worker has the present text. */
@@ -152,18 +171,7 @@ export class OpenFile {
 
   /** Replaces the whole text as one edit that can be undone: a newer version from the disk. */
   async replace(text: string): Promise<void> {
-    const now = this.text;
-    let from = 0;
-    while (from < Math.min(now.length, text.length) && now[from] === text[from]) from++;
-    let tail = 0;
-    while (
-      tail < Math.min(now.length, text.length) - from &&
-      now[now.length - 1 - tail] === text[text.length - 1 - tail]
-    ) {
-      tail++;
-    }
-    const insert = text.slice(from, text.length - tail);
-    await this.#put([{ from, to: now.length - tail, insert }], true, 'disk');
+    await this.#put(between(this.text, text), true, 'disk');
     await this.settled();
   }
 
@@ -181,13 +189,20 @@ export class OpenFile {
 
   async #put(splices: Splice[], unit: boolean, origin: Origin): Promise<void> {
     if (splices.length === 0) return;
+    const others = origin === 'others';
+    if (!others) this.#open();
     const changes = ChangeSet.of(asSpecs(splices), this.text.length);
     const last = this.#typed.at(-1);
     if (last && !last.unit && !unit) last.changes = last.changes.compose(changes);
-    else this.#typed.push({ changes, unit });
+    else this.#typed.push({ changes, unit, others });
     this.text = apply(this.text, splices);
     this.#tell({ splices, origin });
     await this.#turn(() => this.#send());
+  }
+
+  /** Refuses a change of a file that is locked. */
+  #open(): void {
+    if (this.locked !== null) throw new Refused(this.locked);
   }
 
   /** Does a work when all asked for before it is done. */
@@ -199,6 +214,7 @@ export class OpenFile {
   }
 
   async #change(message: Message<'edit' | 'mend' | 'undo' | 'redo' | 'format'>, origin: Origin): Promise<Edited> {
+    this.#open();
     const edited = await page.call(message);
     let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
     for (const mine of this.#typed) {
@@ -220,7 +236,7 @@ export class OpenFile {
     for (let next = this.#typed.shift(); next; next = this.#typed.shift()) {
       const splices = asSplices(next.changes);
       if (splices.length === 0) continue;
-      this.look = await lent(await page.call({ do: 'splice', file: this.name, splices, unit: next.unit }));
+      this.look = await lent(await page.call({ do: 'splice', file: this.name, splices, unit: next.unit, others: next.others }));
     }
   }
 

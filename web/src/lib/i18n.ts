@@ -15,6 +15,7 @@ import { share } from './words/share';
 import { shell } from './words/shell';
 import { start } from './words/start';
 import { text } from './words/text';
+import { together } from './words/together';
 import { why } from './words/why';
 import { wiring } from './words/wiring';
 import { work } from './words/work';
@@ -22,7 +23,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...course, ...exercise, ...out, ...gone, ...names, ...operator, ...panels, ...print, ...prove, ...run, ...share, ...start, ...text, ...why, ...wiring, ...work } as const;
+const table = { ...access, ...shell, ...canvas, ...course, ...exercise, ...out, ...gone, ...names, ...operator, ...panels, ...print, ...prove, ...run, ...share, ...start, ...text, ...together, ...why, ...wiring, ...work } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

@@ -32,6 +32,8 @@ interface Kept {
   paper: 'a4' | 'a4-landscape' | 'a3' | 'a3-landscape';
   /** What the title block says of every chart. */
   author: string;
+  /** The name that the others at a file see. */
+  person: string;
   company: string;
 }
 
@@ -64,6 +66,7 @@ const first: Kept = {
   place: '',
   paper: 'a4',
   author: '',
+  person: '',
   company: '',
 };
 

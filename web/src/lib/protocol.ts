@@ -1121,7 +1121,7 @@ export interface Requests {
   look: { file: string };
   text: { file: string };
   /** Changes the text as it is typed. A unit is undone alone. */
-  splice: { file: string; splices: Array<Splice>; unit?: boolean };
+  splice: { file: string; splices: Array<Splice>; unit?: boolean, others?: boolean };
   /** Executes a gesture. */
   edit: { file: string; gesture: Gesture };
   /** The effect that a gesture would have. */

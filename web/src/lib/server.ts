@@ -6,9 +6,9 @@ import { here } from './here';
 import { t } from './i18n';
 import { link, type Linked } from './link.svelte';
 import { opened, Refused, type Door, type Message, type RunName } from './page';
-import type { Answers, Shelved, Started } from './protocol';
+import type { Answers, Shelved, Splice, Started } from './protocol';
 import { prefs } from './prefs.svelte';
-import { session } from './session.svelte';
+import { ownToken, session } from './session.svelte';
 
 export interface Info {
   name: string;
@@ -37,12 +37,54 @@ export interface Changed {
 /** A run of the server, with its speed. */
 export type Shared = Started & { speed: number };
 
+/** Someone at a file that several people have open together. */
+export interface Person {
+  id: number;
+  name: string;
+  /** False for who only looks. */
+  edits: boolean;
+}
+
+/** The place of a person: the chart, the pointer in its units, the selected symbols, the selection in the text. */
+export interface Here {
+  chart?: string;
+  point?: [number, number];
+  select?: string[];
+  text?: [number, number];
+}
+
+/** A file at which people are; `edited` if its text is shared. */
+export interface Table {
+  file: string;
+  edited: boolean;
+  people: Person[];
+}
+
+/** The answer to whoever joins others at a file. */
+export interface Joined {
+  me: number;
+  edits: boolean;
+  version: number;
+  /** The text that all have; null where nobody edits. */
+  text: string | null;
+  /** True if the change was made that the page had sent before its connection broke. */
+  made: boolean;
+  people: Person[];
+  here: [number, Here][];
+}
+
 /** The messages that the server answers itself, and its answers (`crates/g7/src/serve`). */
 interface Own extends Wishes {
   runs: { asked: object; told: { runs: { run: string; file: string; speed: number }[] } };
   watch: { asked: { run: string }; told: Shared };
   unwatch: { asked: { run: string }; told: null };
   pace: { asked: { run: string; speed: number }; told: { run: string; speed: number } };
+  together_list: { asked: object; told: { tables: Table[] } };
+  together_join: { asked: { file: string; name: string; text: string; edits: boolean; key: string | null }; told: Joined };
+  together_leave: { asked: { file: string }; told: null };
+  together_change: { asked: { file: string; version: number; splices: Splice[]; key: string }; told: { version: number } | { behind: true } };
+  together_here: { asked: { file: string; here: Here }; told: null };
+  together_saved: { asked: { file: string; tag: string }; told: null };
 }
 
 /** The messages that may bring the text of their file. */
@@ -68,7 +110,6 @@ export class Gone extends Refused {
   }
 }
 
-const TOKEN = 'g7-token';
 /** The code with which the server closes a connection whose session is over: the page asks anew who is there. */
 const OVER = 4401;
 /** The wait before the first try to come back, before the next ones, and for an answer, in ms. */
@@ -76,27 +117,11 @@ const SOON = 250;
 const AGAIN = 1000;
 const ANSWER = 5000;
 
-function takeToken(): string {
-  const here = new URL(location.href);
-  const token = here.searchParams.get('token');
-  if (token) {
-    here.searchParams.delete('token');
-    history.replaceState(null, '', here);
-  }
-  try {
-    if (token) sessionStorage.setItem(TOKEN, token);
-    return sessionStorage.getItem(TOKEN) ?? '';
-  } catch {
-    // In a frame of another page there may be no storage.
-    return token ?? '';
-  }
-}
-
 class Server implements Door {
   info: Info | null = null;
   /** The files of the static playground. */
   #examples = new Map<string, string>();
-  #token = '';
+  #token = ownToken();
   #socket: Promise<WebSocket> | null = null;
   /** The connection was lost, so whoever answers now may be another one: it is not told the token. */
   #lost = false;
@@ -108,7 +133,6 @@ class Server implements Door {
 
   /** Finds out if there is a server; otherwise reads the examples. */
   async begin(): Promise<void> {
-    this.#token = takeToken();
     try {
       const answer = await this.#fetch('api/info');
       if (answer.ok && answer.headers.get('content-type')?.includes('json')) {

@@ -11,8 +11,37 @@ interface Told {
   /** There is no admin yet. */
   first?: boolean;
   user?: { name: string; role: Role } | null;
+  /** Whoever has the address for guests: looks and changes nothing. */
+  guest?: boolean;
   /** What people do is written down. */
   log?: boolean;
+}
+
+const TOKEN = 'g7-token';
+
+/** The token of the page's address; it is kept for the window and taken out of the address. */
+function takeToken(): string {
+  const here = new URL(location.href);
+  const token = here.searchParams.get('token');
+  if (token) {
+    here.searchParams.delete('token');
+    history.replaceState(null, '', here);
+  }
+  try {
+    if (token) sessionStorage.setItem(TOKEN, token);
+    return sessionStorage.getItem(TOKEN) ?? '';
+  } catch {
+    // In a frame of another page there may be no storage.
+    return token ?? '';
+  }
+}
+
+let token: string | null = null;
+
+/** The token of this window. */
+export function ownToken(): string {
+  token ??= takeToken();
+  return token;
 }
 
 /** The language of the page, for what the server refuses. */
@@ -26,14 +55,15 @@ class Session {
   readonly asks = $derived(this.told.users && !this.told.user);
 
   async begin(): Promise<void> {
-    const answer = await fetch(new URL('api/session', document.baseURI)).catch(() => null);
+    const headers = { authorization: `Bearer ${ownToken()}` };
+    const answer = await fetch(new URL('api/session', document.baseURI), { headers }).catch(() => null);
     if (answer?.ok && answer.headers.get('content-type')?.includes('json')) this.told = (await answer.json()) as Told;
   }
 
-  /** Without users whoever is here may do everything. */
+  /** Without users whoever is here may do everything, but for guests. */
   may(role: Role): boolean {
     const has = this.told.user?.role;
-    return !this.told.users || (has !== undefined && ROLES.indexOf(has) >= ROLES.indexOf(role));
+    return (!this.told.users && !this.told.guest) || (has !== undefined && ROLES.indexOf(has) >= ROLES.indexOf(role));
   }
 
   /** Why something is not available: the role that it needs; nothing where the user has it. */

@@ -11,6 +11,7 @@ import { t } from '../lib/i18n';
 import { shell } from '../lib/shell.svelte';
 import { completion, hover } from './ask';
 import { byBraces } from './braces';
+import { people } from './carets';
 import { highlight } from './highlight';
 import { marks } from './marks';
 import { phrases } from './phrases';
@@ -103,6 +104,8 @@ export function setup(file: OpenFile, more: Extension): Extension {
     marks,
     smallWindow,
     writeSigns,
+    people(file),
+    EditorState.readOnly.of(file.locked !== null),
     click,
     theme,
     Prec.high(keymap.of(keys)),

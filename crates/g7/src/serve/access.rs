@@ -166,7 +166,13 @@ impl Access {
         if used {
             held.seen = now;
         }
-        Some(Who { name: held.user.clone(), role: held.role, from: from.to_string(), session: Some(*hash) })
+        Some(Who {
+            name: held.user.clone(),
+            role: held.role,
+            from: from.to_string(),
+            session: Some(*hash),
+            guest: false,
+        })
     }
 
     /// Reads the sessions of the file.
@@ -303,7 +309,7 @@ impl Access {
         self.read_into(&mut all).map_err(refusal)?;
         let role = all.get(&session_hash(&secret)).map_or(Role::Viewer, |held| held.role);
         drop(all);
-        let who = Who { name: name.to_owned(), role, from: from.to_string(), session: None };
+        let who = Who { name: name.to_owned(), role, from: from.to_string(), session: None, guest: false };
         self.audit.note(&who, "login", None, &json!({ "role": role.word() }));
         Ok(secret)
     }
@@ -341,7 +347,13 @@ impl Access {
                     return Err(wrong());
                 }
             }
-            let who = Who { name: name.clone(), role: Role::Admin, from: from.to_string(), session: None };
+            let who = Who {
+                name: name.clone(),
+                role: Role::Admin,
+                from: from.to_string(),
+                session: None,
+                guest: false,
+            };
             access.must(&who, "user-add", &json!({ "user": name, "role": "admin", "first": true }))?;
             access.users.add(&name, Role::Admin, &password, utc_millis(), true).map_err(refusal)?;
             *lock(&access.code) = None;

@@ -54,6 +54,9 @@ pub(crate) struct Serve {
     /// Let in no page of an earlier start: each needs the address that is printed now.
     #[arg(long, conflicts_with = "users")]
     pub(super) forget: bool,
+    /// Print an address for guests too: whoever has it looks at charts and runs, and changes nothing.
+    #[arg(long, conflicts_with = "online")]
+    pub(super) guests: bool,
     /// Do not open a browser; only print the address.
     #[arg(long)]
     pub(super) no_open: bool,

@@ -8,6 +8,7 @@
 //! POST /api/password             { old, new }: one's own
 //! GET  /api/users                for an admin, as all below
 //! POST /api/users                { do: add | role | password | remove | revoke, name, role, password }
+//! GET  /api/guests               the token of guests, for who may write files
 //! GET  /api/log                  ?from=&until=&level=&text=&before=
 //! ```
 
@@ -48,6 +49,7 @@ pub(super) fn routes() -> Router<Shared> {
         .route("/api/password", post(password))
         .route("/api/users", get(users).post(change))
         .route("/api/log", get(log))
+        .route("/api/guests", get(guests))
 }
 
 fn access(shared: &Shared) -> Result<Arc<Access>, Refusal> {
@@ -58,16 +60,23 @@ fn access(shared: &Shared) -> Result<Arc<Access>, Refusal> {
 
 /// Who asks. Without users the one with the token may do everything.
 async fn session(State(shared): State<Shared>, who: Option<Extension<Who>>) -> Json<Value> {
-    let Some(access) = &shared.access else {
-        return Json(json!({ "users": false, "log": shared.audit.is_kept() }));
-    };
+    let guest = who.as_ref().is_some_and(|Extension(who)| who.guest);
     let user = who.map(|Extension(who)| json!({ "name": who.name, "role": who.role.word() }));
+    let Some(access) = &shared.access else {
+        let user = user.filter(|_| guest);
+        return Json(json!({ "users": false, "guest": guest, "user": user, "log": shared.audit.is_kept() }));
+    };
     Json(json!({
         "users": true,
+        "guest": guest,
         "first": access.code().is_some(),
         "user": user,
         "log": shared.audit.is_kept(),
     }))
+}
+
+async fn guests(State(shared): State<Shared>) -> Json<Value> {
+    Json(json!({ "token": shared.guests.get() }))
 }
 
 #[derive(Deserialize)]

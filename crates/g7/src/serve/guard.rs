@@ -44,6 +44,8 @@ pub(super) enum Pass {
 #[derive(Clone, Debug)]
 pub(super) struct Guard {
     pub(super) pass: Pass,
+    /// The tokens of guests, where there may be some.
+    pub(super) guests: Option<Arc<Tokens>>,
     pub(super) bound: SocketAddr,
     /// Its connections are encrypted; the names of the certificate are names of this server.
     pub(super) certificate: Option<Arc<Certificate>>,
@@ -83,6 +85,7 @@ fn needed(method: &Method, path: &str) -> Option<Role> {
         (_, "/api/logout" | "/api/password") => Role::Viewer,
         (&Method::GET, "/api/log") => Role::Operator,
         (&Method::POST, "/api/wiring/look") => Role::Viewer,
+        (&Method::GET, "/api/guests") => Role::Engineer,
         (&Method::POST, "/api/wiring/edit" | "/api/wiring/live") => Role::Engineer,
         (_, "/api/file" | "/api/new" | "/api/rename" | "/api/delete") => Role::Engineer,
         (_, "/api/draft" | "/api/draft/take" | "/api/draft/saved") => Role::Engineer,
@@ -193,15 +196,16 @@ impl Guard {
     /// Who sends a request, by token or session.
     fn known(&self, request: &Request) -> Result<Option<Who>, Refusal> {
         let from = peer(request);
-        match &self.pass {
-            Pass::Tokens(tokens) => {
-                Ok(has_token(tokens, request)?.then(|| Who::with_token(from.to_string())))
+        let known = match &self.pass {
+            Pass::Tokens(tokens) => has_token(tokens, request)?.then(|| Who::with_token(from.to_string())),
+            Pass::Users(access) => cookie(request.headers()).and_then(|secret| access.who(secret, from)),
+        };
+        Ok(match &self.guests {
+            Some(guests) if known.is_none() && has_token(guests, request)? => {
+                Some(Who::guest(from.to_string()))
             }
-            Pass::Users(access) => {
-                let Some(secret) = cookie(request.headers()) else { return Ok(None) };
-                Ok(access.who(secret, from))
-            }
-        }
+            _ => known,
+        })
     }
 
     /// True if a host names this server: by its address, or as `localhost`.
@@ -295,6 +299,7 @@ mod tests {
         Guard {
             pass: Pass::Tokens(Arc::new(Tokens::fresh().expect("a token"))),
             bound,
+            guests: None,
             certificate: None,
             audit: Audit::default(),
             foreign: Foreign::default(),
@@ -323,6 +328,7 @@ mod tests {
             (Method::GET, "/api/draft", Some(Role::Engineer)),
             (Method::POST, "/api/draft/take", Some(Role::Engineer)),
             (Method::GET, "/api/log", Some(Role::Operator)),
+            (Method::GET, "/api/guests", Some(Role::Engineer)),
             (Method::GET, "/api/history/export", Some(Role::Viewer)),
             (Method::POST, "/api/wiring/look", Some(Role::Viewer)),
             (Method::POST, "/api/wiring/live", Some(Role::Engineer)),

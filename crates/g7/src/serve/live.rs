@@ -27,6 +27,7 @@ use super::places::Place;
 use super::refusal::Refusal;
 use super::runs::letter;
 use super::shared::{Limits, Shared};
+use super::together;
 use crate::operator::{NAME, Order, Wish};
 use crate::who::Who;
 
@@ -149,6 +150,7 @@ async fn attend(mut socket: WebSocket, shared: Shared, who: Who, seat: Place) {
             break;
         }
     }
+    together::gone(&shared, &outbox);
     // Runs hold the client by a weak reference only, so this frees all waiting messages.
     drop(outbox);
     drop(seat);
@@ -169,7 +171,8 @@ fn now(shared: &Shared, outbox: &Outbox, used: bool) -> Option<Who> {
     let who = outbox.who();
     match (&shared.access, &who.session) {
         (Some(access), Some(session)) => access.again(session, who.from.parse().ok()?, used),
-        (Some(_), None) => None,
+        // A guest has no session; it may look as long as the page is open.
+        (Some(_), None) => who.guest.then(|| who.clone()),
         (None, _) => Some(who.clone()),
     }
 }
@@ -191,6 +194,9 @@ async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue
     let head: Head =
         serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
     let who = now(shared, outbox, true).ok_or("the session is over: log in again")?;
+    if head.r#do.starts_with("together_") {
+        return together::call(shared, &who, outbox, id, call.get());
+    }
     if !matches!(head.r#do.as_str(), "runs" | "watch" | "unwatch") && !head.r#do.starts_with("operator_") {
         // Runs of a simulation touch no machine; they are shared with others all the same.
         who.needs(Role::Operator).map_err(|why| why.to_string())?;

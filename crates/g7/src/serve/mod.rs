@@ -10,6 +10,7 @@
 //!                            -> history -> store                the history of a controller
 //!                            -> live -> runs -> desk -> Page    shared runs
 //!                                <- outbox <-+
+//!                                    -> together                people who edit one file at once
 //!                                    -> operator::Stage         a running controller (`--online`)
 //! ```
 //!
@@ -54,6 +55,7 @@ mod system;
 mod tests;
 mod throttle;
 mod tls;
+mod together;
 mod tokens;
 mod watch;
 mod wiring;
@@ -85,6 +87,7 @@ use places::Places;
 use rules::Rules;
 use runs::Runs;
 use shared::{Clients, Inner, Limits, Shared};
+use together::Together;
 use tokens::{Shelf, Tokens};
 use watch::Watch;
 
@@ -139,6 +142,8 @@ fn shared(
         folder,
         runs: Arc::new(Runs::new(limits.runs)),
         clients: Clients::default(),
+        together: Together::default(),
+        guests: OnceLock::new(),
         seats: Places::new(limits.clients, limits.from_one),
         limits,
         station,
@@ -153,7 +158,10 @@ fn shared(
 /// All addresses, behind the guard.
 fn app(shared: Shared, guard: Guard) -> Router {
     let again = match &guard.pass {
-        Pass::Tokens(tokens) => tokens::routes(Arc::clone(tokens), guard.bound),
+        Pass::Tokens(tokens) => {
+            let all = [Some(tokens), guard.guests.as_ref()].into_iter().flatten().cloned();
+            tokens::routes(all.collect(), guard.bound)
+        }
         Pass::Users(_) => Router::new(),
     };
     Router::new()
@@ -217,7 +225,7 @@ async fn bind(host: IpAddr, port: Option<u16>, waiting: Option<u16>) -> Result<T
 }
 
 /// Looks for changes of the users and of the certificate, and notes which tokens were used.
-async fn look_after(rules: Rules, tokens: Option<Arc<Tokens>>) {
+async fn look_after(rules: Rules, tokens: Vec<Arc<Tokens>>) {
     let mut tick = tokio::time::interval(LOOK_USERS);
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
     loop {
@@ -237,11 +245,14 @@ struct Open {
     bound: SocketAddr,
     /// The tokens that let in, where there are no users.
     tokens: Option<Arc<Tokens>>,
+    /// The tokens of guests, where there may be some.
+    guests: Option<Arc<Tokens>>,
 }
 
 impl Open {
     /// Listens, and answers from here on.
-    fn new(shared: &Shared, rules: &Rules, forget: bool) -> Result<Open, Failure> {
+    fn new(shared: &Shared, rules: &Rules, args: &Serve) -> Result<Open, Failure> {
+        let forget = args.forget;
         system::room_for(shared.limits.clients);
         let mut threads = tokio::runtime::Builder::new_multi_thread();
         if shared.station.is_some() {
@@ -251,34 +262,44 @@ impl Open {
         let runtime =
             runtime.map_err(|e| Failure::Usage(say!("the server cannot start: {e}", e = raw(&e))))?;
         // Whoever operates a machine begins anew with it: a controller knows the token of its own start alone.
-        let state = if shared.station.is_some() || rules.access.is_some() { None } else { state::folder() };
-        let shelf = state.map(|state| Shelf::of(shared.folder.root(), &state));
+        let state = if shared.station.is_some() { None } else { state::folder() };
+        let root = shared.folder.root();
+        let of_guests = state.as_ref().map(|state| Shelf::of_guests(root, state));
+        let shelf = state.filter(|_| rules.access.is_none()).map(|state| Shelf::of(root, &state));
         let waiting = shelf.as_ref().filter(|_| !forget).and_then(|shelf| shelf.port(rules.host));
         let listener = runtime.block_on(bind(rules.host, rules.port, waiting))?;
         let bound = listener.local_addr()?;
+        let kept = |shelf: Option<Shelf>| -> Result<Arc<Tokens>, Failure> {
+            Ok(Arc::new(shelf.map_or_else(Tokens::fresh, |shelf| Tokens::kept(shelf, bound, forget))?))
+        };
+        let guests = args.guests.then(|| kept(of_guests)).transpose()?;
+        if let Some(guests) = &guests {
+            // It is set once.
+            shared.guests.set(guests.own().to_owned()).ok();
+        }
         let (pass, tokens) = match (&rules.access, shelf) {
             (Some(access), _) => (Pass::Users(Arc::clone(access)), None),
             (None, shelf) => {
-                let kept = |shelf| Tokens::kept(shelf, bound, forget);
-                let tokens = Arc::new(shelf.map_or_else(Tokens::fresh, kept)?);
+                let tokens = kept(shelf)?;
                 (Pass::Tokens(Arc::clone(&tokens)), Some(tokens))
             }
         };
-        let app = app(Arc::clone(shared), rules.guard(pass, bound));
+        let app = app(Arc::clone(shared), rules.guard(pass, guests.clone(), bound));
         runtime.spawn(tell_changes(Arc::clone(shared)));
-        runtime.spawn(look_after(rules.clone(), tokens.clone()));
+        runtime.spawn(together::tell_moves(Arc::clone(shared)));
+        let all = tokens.iter().chain(&guests).cloned().collect();
+        runtime.spawn(look_after(rules.clone(), all));
         runtime.spawn(listen::listen(listener, app, rules.door()?));
-        Ok(Open { runtime: Some(runtime), bound, tokens })
+        Ok(Open { runtime: Some(runtime), bound, tokens, guests })
     }
 
     /// Tells the user where the page is.
     fn tell(&self, args: &Serve, shared: &Shared, rules: &Rules) -> Result<(), Failure> {
         let page = if shared.station.is_some() { "operator" } else { "" };
         let scheme = if rules.certificate.is_some() { "https" } else { "http" };
-        let mut address = format!("{scheme}://{}/{page}", shown(self.bound));
-        if let Some(tokens) = &self.tokens {
-            address = format!("{address}?token={}", tokens.own());
-        }
+        let bare = format!("{scheme}://{}/{page}", shown(self.bound));
+        let with = |tokens: &Arc<Tokens>| format!("{bare}?token={}", tokens.own());
+        let address = self.tokens.as_ref().map_or_else(|| bare.clone(), with);
         let title = raw(&shared.title);
         tell(if args.read_only { say!("G7 serves {title}, read-only") } else { say!("G7 serves {title}") });
         if self.bound.ip().is_unspecified() {
@@ -289,6 +310,10 @@ impl Open {
             tell(say!("code: {}", raw(code)));
         }
         print(&address)?;
+        if let Some(guests) = &self.guests {
+            tell(say!("for guests, who look and change nothing:"));
+            print(&with(guests))?;
+        }
         tell(say!("Ctrl-C ends it"));
         if !args.no_open {
             browser::open(&address);
@@ -316,7 +341,7 @@ pub(crate) fn serve(args: &Serve) -> Result<Verdict, Failure> {
     let rules = Rules::of(args, None, &audit, args.log.clone())?;
     let limits = rules.limits(Limits::default());
     let shared = shared(args, limits, state::folder().as_deref(), None, &rules)?;
-    let open = Open::new(&shared, &rules, args.forget)?;
+    let open = Open::new(&shared, &rules, args)?;
     open.tell(args, &shared, &rules)?;
     if let Some(runtime) = &open.runtime {
         runtime.block_on(tokio::signal::ctrl_c())?;
@@ -335,7 +360,7 @@ fn online(args: &Serve) -> Result<Verdict, Failure> {
     let limits = rules.limits(Limits::beside_a_machine());
     let shared = shared(args, limits, state::folder().as_deref(), Some(station), &rules)?;
     // A port that is taken is found before anything moves.
-    let open = Open::new(&shared, &rules, args.forget)?;
+    let open = Open::new(&shared, &rules, args)?;
     let users = args.users.clone().or(users);
     let (plant, users, logged) = (args.plant.as_deref(), users.as_deref(), audit.is_kept());
     let more = More { plant, users, logged, ..More::default() };

@@ -17,6 +17,7 @@ use super::guard::{Foreign, Guard, Pass};
 use super::listen::Door;
 use super::shared::Limits;
 use super::tls::{Certificate, Files};
+use super::tokens::Tokens;
 use crate::audit::Audit;
 use crate::failure::{Failure, raw, unlogged};
 
@@ -75,10 +76,10 @@ impl Rules {
     }
 
     /// The guard that judges requests.
-    pub(super) fn guard(&self, pass: Pass, bound: SocketAddr) -> Guard {
+    pub(super) fn guard(&self, pass: Pass, guests: Option<Arc<Tokens>>, bound: SocketAddr) -> Guard {
         let certificate = self.certificate.clone();
         let (audit, foreign, framed) = (self.audit.clone(), self.foreign.clone(), self.framed.clone());
-        Guard { pass, bound, certificate, audit, foreign, framed }
+        Guard { pass, guests, bound, certificate, audit, foreign, framed }
     }
 
     /// The door that lets connections in.

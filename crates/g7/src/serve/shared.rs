@@ -17,6 +17,7 @@ use super::folder::Folder;
 use super::outbox::Outbox;
 use super::places::Places;
 use super::runs::Runs;
+use super::together::Together;
 use super::watch::Watch;
 use super::wiring::Asker;
 use crate::audit::Audit;
@@ -84,6 +85,10 @@ pub(super) struct Inner {
     pub(super) watch: Watch,
     pub(super) runs: Arc<Runs>,
     pub(super) clients: Clients,
+    /// The files that several people edit at once.
+    pub(super) together: Together,
+    /// The token of guests, where there may be some.
+    pub(super) guests: OnceLock<String>,
     pub(super) seats: Places,
     pub(super) limits: Limits,
     /// The way to a running controller.

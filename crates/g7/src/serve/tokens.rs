@@ -71,7 +71,16 @@ pub(super) struct Shelf {
 
 impl Shelf {
     pub(super) fn of(root: &Path, state: &Path) -> Shelf {
-        let folder = state.join("g7").join("pages").join(state::name_of(root));
+        Shelf::below("pages", root, state)
+    }
+
+    /// The place for the tokens of guests.
+    pub(super) fn of_guests(root: &Path, state: &Path) -> Shelf {
+        Shelf::below("guests", root, state)
+    }
+
+    fn below(kind: &str, root: &Path, state: &Path) -> Shelf {
+        let folder = state.join("g7").join(kind).join(state::name_of(root));
         Shelf { root: root.to_string_lossy().into_owned(), folder }
     }
 
@@ -216,7 +225,7 @@ fn token() -> Result<String, Failure> {
 }
 
 /// A page asks this before it shows its token, since somebody else may answer at the address of its server.
-pub(super) fn routes(tokens: Arc<Tokens>, bound: SocketAddr) -> Router {
+pub(super) fn routes(tokens: Vec<Arc<Tokens>>, bound: SocketAddr) -> Router {
     Router::new().route("/api/again", get(again)).with_state((tokens, bound))
 }
 
@@ -226,14 +235,15 @@ struct Asks {
 }
 
 async fn again(
-    State((tokens, bound)): State<(Arc<Tokens>, SocketAddr)>,
+    State((tokens, bound)): State<(Vec<Arc<Tokens>>, SocketAddr)>,
     Query(asks): Query<Asks>,
 ) -> Result<Json<Value>, Refusal> {
     let plain = asks.number.len() == NUMBER && asks.number.bytes().all(|b| b.is_ascii_hexdigit());
     if !plain {
         return Err(Refusal::bad(say!("this request means nothing")));
     }
-    Ok(Json(json!({ "proofs": tokens.proofs(bound, &asks.number) })))
+    let proofs: Vec<String> = tokens.iter().flat_map(|of| of.proofs(bound, &asks.number)).collect();
+    Ok(Json(json!({ "proofs": proofs })))
 }
 
 #[cfg(test)]

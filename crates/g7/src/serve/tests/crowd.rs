@@ -235,7 +235,7 @@ async fn beside(server: &Server, door: listen::Door) -> SocketAddr {
     let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
     let bound = listener.local_addr().expect("an address");
     let rules = Rules::of(&args_of(&server.root.join("charts")), None, &crate::audit::Audit::default(), None);
-    let guard = rules.expect("they fit").guard(some_pass(), bound);
+    let guard = rules.expect("they fit").guard(some_pass(), None, bound);
     tokio::spawn(listen::listen(listener, app(Arc::clone(&server.shared), guard), door));
     bound
 }

@@ -7,6 +7,7 @@ mod drafts;
 mod files;
 mod guard;
 mod runs;
+mod together;
 mod users;
 mod wiring;
 
@@ -51,6 +52,8 @@ chart G {
 struct Server {
     bound: SocketAddr,
     token: String,
+    /// The token of guests.
+    guest: String,
     root: PathBuf,
     shared: Shared,
     task: tokio::task::JoinHandle<()>,
@@ -107,6 +110,7 @@ fn args_of(folder: &Path) -> Serve {
         log: None,
         read_only: false,
         forget: false,
+        guests: false,
         no_open: true,
         framed: None,
         start: None,
@@ -158,15 +162,19 @@ impl Server {
         let bound = listener.local_addr().expect("an address");
         let tokens = Tokens::fresh().expect("a token");
         let token = tokens.own().to_owned();
-        let app = app(Arc::clone(&shared), rules.guard(Pass::Tokens(Arc::new(tokens)), bound));
-        let of = Arc::clone(&shared);
+        let guests = Tokens::fresh().expect("a token");
+        let guest = guests.own().to_owned();
+        let guard = rules.guard(Pass::Tokens(Arc::new(tokens)), Some(Arc::new(guests)), bound);
+        let app = app(Arc::clone(&shared), guard);
+        let (of, moves) = (Arc::clone(&shared), Arc::clone(&shared));
         let task = tokio::spawn(async move {
             tokio::select! {
                 () = listen::listen(listener, app, listen::Door::default()) => {}
                 () = tell_changes(of) => {}
+                () = super::together::tell_moves(moves) => {}
             }
         });
-        Server { bound, token, root, shared, task }
+        Server { bound, token, guest, root, shared, task }
     }
 
     fn path(&self, name: &str) -> PathBuf {
@@ -197,7 +205,19 @@ impl Server {
 
     /// A request of a page of this server.
     async fn ask(&self, method: &str, path: &str, headers: &[(&str, &str)], body: &str) -> Reply {
-        let (host, token) = (self.bound.to_string(), format!("Bearer {}", self.token));
+        self.ask_by(&self.token, method, path, headers, body).await
+    }
+
+    /// A request with a token.
+    async fn ask_by(
+        &self,
+        token: &str,
+        method: &str,
+        path: &str,
+        headers: &[(&str, &str)],
+        body: &str,
+    ) -> Reply {
+        let (host, token) = (self.bound.to_string(), format!("Bearer {token}"));
         let mut all = vec![("Host", host.as_str()), ("Authorization", token.as_str())];
         all.extend(headers);
         self.bare(method, path, &all, body).await
@@ -212,9 +232,18 @@ impl Server {
         self.try_live(&[]).await.expect("a WebSocket")
     }
 
+    /// The WebSocket of a guest.
+    async fn guest(&self) -> Live {
+        self.live_by(&self.guest, &[]).await.expect("a WebSocket")
+    }
+
     async fn try_live(&self, headers: &[(&'static str, &str)]) -> Result<Live, Error> {
+        self.live_by(&self.token, headers).await
+    }
+
+    async fn live_by(&self, token: &str, headers: &[(&'static str, &str)]) -> Result<Live, Error> {
         use tokio_tungstenite::tungstenite::client::IntoClientRequest as _;
-        let address = format!("ws://{}/api/live?token={}", self.bound, self.token);
+        let address = format!("ws://{}/api/live?token={token}", self.bound);
         let mut request = address.into_client_request().expect("a request");
         for (name, value) in headers {
             request.headers_mut().insert(*name, value.parse().expect("a header"));

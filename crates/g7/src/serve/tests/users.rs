@@ -83,16 +83,16 @@ impl Site {
             shared(&args, limits, Some(&root.join("state")), None, &rules).expect("a folder to serve");
         let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).await.expect("a port");
         let bound = listener.local_addr().expect("an address");
-        let app = app(Arc::clone(&shared), rules.guard(Pass::Users(Arc::clone(&access)), bound));
+        let app = app(Arc::clone(&shared), rules.guard(Pass::Users(Arc::clone(&access)), None, bound));
         let door = Door { tls: rules.door().expect("a door").tls, ..door };
         let of = rules.clone();
         let task = tokio::spawn(async move {
             tokio::select! {
                 () = listen::listen(listener, app, door) => {}
-                () = look_after(of, None) => {}
+                () = look_after(of, Vec::new()) => {}
             }
         });
-        let server = Server { bound, token: String::new(), root, shared, task };
+        let server = Server { bound, token: String::new(), guest: String::new(), root, shared, task };
         Site { server, trusts, access, rules, log: Some(log) }
     }
 
@@ -438,7 +438,7 @@ async fn row_22_without_tls_a_crowd_hears_429() {
     let bound = listener.local_addr().expect("an address");
     let rules =
         Rules::of(&args_of(&server.root.join("charts")), None, &Audit::default(), None).expect("they fit");
-    let app = app(Arc::clone(&server.shared), rules.guard(some_pass(), bound));
+    let app = app(Arc::clone(&server.shared), rules.guard(some_pass(), None, bound));
     // Those who hold the places are quiet, and keep them.
     let door = Door { from_one: 8, quiet: PATIENCE, ..Door::default() };
     let task = tokio::spawn(listen::listen(listener, app, door));
