@@ -37,7 +37,7 @@ PAGE := $(shell find web/src exercises docs/book/src/problems docs/book/fr docs/
 EXTENSION := editors/vscode
 EXTENDED := $(EXTENSION)/node_modules/.package-lock.json
 
-.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site site-bench pictures page-test page-bench bench bench-check grade-bench prove-bench prove-table oscat interop online-bench soak faults book blocks fuzz help FORCE
+.PHONY: grammars types vscode tree-sitter helix zed run view install online-demo deb sbom static test opcua-bench tally-anew peers checkers lint deny wasm web site site-bench pictures page-test page-bench bench bench-check grade-bench prove-bench prove-table oscat interop online-bench soak page-soak faults book blocks fuzz help FORCE
 
 ## build G7 and open the editor in the browser on the examples (FOLDER=… for another)
 run: WASM := quick-wasm
@@ -303,6 +303,11 @@ online-bench: $(PYTHON)/bin/pymodbus.simulator
 soak: export G7_SEEDS = $(SEEDS)
 soak:
 	cargo test --profile soak --package g7-online --test simulation -- --nocapture
+
+## fifty pages that work together at one server, for an hour: its memory as a table, and no more of it at the end (MINUTES=… for another time)
+page-soak: export G7_SOAK_MINUTES = $(or $(MINUTES),60)
+page-soak:
+	cargo test --profile soak --package g7 --test all -- --nocapture a_class_takes
 
 ## faults around a controller on line, each hundreds of times: what held, and how long it took
 faults: export G7_FAULTS = many

@@ -214,6 +214,35 @@ test('after a server that ended all go on together, with what each did meanwhile
   await Promise.all([ana, ben].map((page) => page.context().close()));
 });
 
+test('a change whose answer was lost is made once', async () => {
+  const ana = await joined('Ana');
+  const ben = await openWith(b, site, 'loop.g7', { view: 'both' });
+  // The first change reaches the server, and the connection breaks before its answer has come.
+  let breaks = true;
+  await ben.routeWebSocket(/api\/live/, (socket) => {
+    const there = socket.connectToServer();
+    let dumb = false;
+    socket.onMessage((message) => {
+      there.send(message);
+      if (!breaks || !String(message).includes('together_change')) return;
+      breaks = false;
+      dumb = true;
+      setTimeout(() => void socket.close(), 300);
+    });
+    there.onMessage((message) => (dumb ? undefined : socket.send(message)));
+  });
+  await ben.reload();
+  await joinAs(ben, 'Ben');
+  await type(ben, 'Control+Home', 'x');
+  await agree([ana], 'xinput');
+  await type(ana, 'Control+End', '// by Ana');
+  await until(() => Promise.resolve(!breaks), 'the connection did not break');
+  await type(ben, 'Control+Home', 'y');
+  const now = await agree([ana, ben], '// by Ana', 'yxinput');
+  assert.equal(now, `yx${TEXT}// by Ana`);
+  await Promise.all([ana, ben].map((page) => page.context().close()));
+});
+
 test('a guest looks, and has a copy to try things', async () => {
   const ana = await joined('Ana');
   await ana.getByRole('button', { name: 'Work together' }).click();

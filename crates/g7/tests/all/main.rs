@@ -4,6 +4,7 @@ mod cases;
 mod check;
 mod code;
 mod common;
+mod crowd;
 mod dossier;
 mod draw;
 mod events;

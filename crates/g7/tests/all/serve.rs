@@ -10,10 +10,10 @@ use std::time::Duration;
 use common::{Folder, PINGPONG};
 
 /// A server for a folder; it ends with the test.
-struct Served {
+pub(crate) struct Served {
     child: Child,
-    host: String,
-    token: String,
+    pub(crate) host: String,
+    pub(crate) token: String,
 }
 
 impl Drop for Served {
@@ -24,7 +24,7 @@ impl Drop for Served {
 }
 
 impl Served {
-    fn new(folder: &Folder, args: &[&str]) -> Served {
+    pub(crate) fn new(folder: &Folder, args: &[&str]) -> Served {
         let mut child =
             command(folder, args).stdout(Stdio::piped()).stderr(Stdio::null()).spawn().expect("g7 serve");
         let mut line = String::new();
@@ -35,7 +35,17 @@ impl Served {
         Served { child, host: host.to_owned(), token: token.to_owned() }
     }
 
-    fn connect(&self) -> TcpStream {
+    /// A memory of the process as the system tells it, in kB: `VmRSS` is what it has now, `VmHWM` the greatest.
+    #[cfg(target_os = "linux")]
+    #[allow(clippy::disallowed_methods, reason = "the system tells it in a file")]
+    pub(crate) fn memory(&self, what: &str) -> u64 {
+        let status =
+            std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).expect("the process");
+        let line = status.lines().find(|line| line.starts_with(what)).expect("its memory");
+        line.split_whitespace().nth(1).and_then(|n| n.parse().ok()).expect("a number")
+    }
+
+    pub(crate) fn connect(&self) -> TcpStream {
         let stream = TcpStream::connect(&self.host).expect("a connection");
         stream.set_read_timeout(Some(Duration::from_secs(120))).expect("a limit");
         stream
@@ -175,15 +185,6 @@ fn unsaved_work_is_there_again_when_the_server_was_killed() {
     assert_eq!(folder.read("chart.g7"), PINGPONG);
 }
 
-/// The greatest memory use of a process, in kB.
-#[cfg(target_os = "linux")]
-#[allow(clippy::disallowed_methods, reason = "the system tells it in a file")]
-fn peak(child: &Child) -> u64 {
-    let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).expect("the process");
-    let line = status.lines().find(|l| l.starts_with("VmHWM:")).expect("its memory");
-    line.split_whitespace().nth(1).and_then(|n| n.parse().ok()).expect("a number")
-}
-
 #[cfg(target_os = "linux")]
 #[test]
 fn floods_cost_bounded_memory_and_the_scan_goes_on() {
@@ -234,7 +235,7 @@ fn floods_cost_bounded_memory_and_the_scan_goes_on() {
     }
     let behind = scans();
     while scans() < behind.max(before) + 20 {}
-    let peak = peak(&served.child);
+    let peak = served.memory("VmHWM");
     assert!(peak < 150_000, "{peak} kB for a server that was sent 300 MB");
     assert_eq!(folder.read("chart.g7"), PINGPONG);
 }
@@ -257,6 +258,6 @@ fn a_file_that_many_ask_for_and_nobody_reads_is_there_once() {
             stream
         })
         .collect();
-    let peak = peak(&served.child);
+    let peak = served.memory("VmHWM");
     assert!(peak < 200_000, "{peak} kB for {} copies of {large} bytes", held.len());
 }
