@@ -327,6 +327,7 @@ export type Frame = {
 
 /** One gesture of the editor. */
 export type Gesture =
+  | { g: 'view'; plant: string; file: string; bindings: Array<PictureBinding> }
   | {
     g: 'add_step';
     /** The chart. */
@@ -1171,6 +1172,7 @@ export interface Requests {
     pictures: Array<Shelved>;
   };
   /** The logic of a symbol in the languages of controllers. */
+  plant_picture: { file: string; plant: string };
   logic: { file: string; id: string };
   /** Converts logic in one of these languages to an expression of the text. */
   logic_read: { tongue: Tongue; text: string };
@@ -1324,6 +1326,7 @@ export interface Answers {
   forms: Array<Form>;
   export: Out;
   sheets: Printed;
+  plant_picture: PlantPicture;
   logic: Array<LogicPiece>;
   logic_read: Text;
   style: Style;
@@ -1361,3 +1364,7 @@ export interface Answers {
   why: Because;
   run_export: Text;
 }
+
+export type PictureBinding = { element: string; attribute: string; value: string };
+export type PictureName = { name: string; role: 'state' | 'const' | 'parts' | 'output' | 'input'; type: 'bool' | 'int' | 'real' | 'text' | 'other'; value: string; hand: boolean; limits?: [string, string]; comment?: string };
+export type PlantPicture = { file?: string; bindings: Array<PictureBinding>; names: Array<PictureName> };
