@@ -322,7 +322,7 @@ pub enum What {
 
 /// A binding of a picture: an attribute of an element follows a value.
 #[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS))]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "PictureBinding"))]
 pub struct Bound {
     /// The element, by its name in the picture.
     pub element: String,

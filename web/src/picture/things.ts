@@ -1,6 +1,6 @@
 // What stands on the sheet, read from the text of the picture. A thing is an element that is moved, bound and deleted as a
 // whole: a part of the palette, or an element that was drawn elsewhere. Below: `markup.ts`, the text; above: `sheet.svelte.ts`.
-import { attribute, indentOf, inside, local, parsed, spliced, wholeOf, withAttribute, type Element, type Splice } from './markup';
+import { attribute, indentOf, inside, local, parsed, spliced, Unreadable, wholeOf, withAttribute, type Element, type Splice } from './markup';
 import { frameOf, transformOf, type Frame } from './frame';
 import { offersOf, type Offer } from './effects';
 
@@ -37,11 +37,14 @@ export const NAME = 'data-g7';
 export const PART = 'data-g7-part';
 export const STYLE = 'data-g7-style';
 
-const shown = (element: Element): Element[] => element.children.filter((child) => !HIDDEN.has(local(child)));
+/** An element with a prefix belongs to the program that drew the picture. */
+const shown = (element: Element): Element[] => element.children.filter((child) => !HIDDEN.has(local(child)) && !child.name.includes(':'));
 
 /** The picture of a text; throws if it is none. */
 export function pictureOf(text: string): Picture {
   const root = parsed(text);
+  // What is written here has no prefix, and would be no SVG there.
+  if (root.name !== 'svg') throw new Unreadable(`<${root.name}`);
   const layer = layerOf(root);
   return { text, root, layer, things: shown(layer).map(thing) };
 }
