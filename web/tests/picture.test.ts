@@ -1,9 +1,14 @@
 // Stories of the picture editor: a plant without a picture gets one, whose parts follow the run; a picture that was drawn
 // elsewhere stays to the byte where nobody changed it.
 import assert from 'node:assert/strict';
-import { readFileSync } from 'node:fs';
+import { readdirSync, readFileSync } from 'node:fs';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
+import { picture as words } from '../src/lib/words/picture';
+import { scaled, unscaled, type Offer } from '../src/picture/effects';
+import { framed, frameOf, placeOf, transformOf } from '../src/picture/frame';
+import { spliced, Unreadable } from '../src/picture/markup';
+import { pictureOf, withFrame, without } from '../src/picture/things';
 import { telephone } from './finger';
 import { axe, box, browser, done, open, playground, textOf, until, type Opened, type Site } from './lib';
 
@@ -233,4 +238,84 @@ test('a picture with changes is not closed without a word', async () => {
   await dialog.waitFor({ state: 'detached' });
   assert.equal(await textOf(page), TANK);
   await done(page);
+});
+
+test('a number goes from one end of its effect to the other as its variable goes through its range', () => {
+  const ends: [from: number, to: number][] = [[0, 1], [0, 38], [-120, 120], [0, -100], [5, 5.5], [0, 360]];
+  const ranges: [from: number, to: number][] = [[0, 100], [0, 1], [5, 25], [-10, 10], [-3, -2.5], [100, 0]];
+  for (const value of ['level', 'level - 1.0'])
+    for (const [from, to] of ends)
+      for (const range of ranges) {
+        const offer: Offer = { element: 'a', attribute: 'dx', kind: 'number', from, to };
+        const written = scaled(value, offer, range);
+        const at = (level: number) => new Function('level', `return ${written}`)(value === 'level' ? level : level + 1) as number;
+        assert.ok(Math.abs(at(range[0]) - from) < 1e-6 && Math.abs(at(range[1]) - to) < 1e-6, `${written} for ${String(range)} to ${from} .. ${to}`);
+        assert.deepEqual(unscaled(written, value, offer), range, `the range of ${written}`);
+      }
+  const level: Offer = { element: 'a', attribute: 'level', kind: 'number', from: 0, to: 1 };
+  assert.equal(scaled('level', level, [0, 100]), 'level / 100.0', 'nothing more than is needed');
+  assert.equal(unscaled('level / 50.0 + wave', 'level', level), null, 'what someone else wrote');
+});
+
+test('a frame puts a thing where it is said to be, turned and sized', () => {
+  const box = { x: 7, y: -3, width: 40, height: 20 };
+  const place = { cx: 100, cy: 60, w: 80, h: 10, angle: 30 };
+  const frame = frameOf(transformOf(framed(place, box)));
+  assert.ok(frame);
+  const found = placeOf(frame, box);
+  for (const key of ['cx', 'cy', 'w', 'h', 'angle'] as const) assert.ok(Math.abs(found[key] - place[key]) < 0.01, `${key} ${found[key]}`);
+  for (const other of ['matrix(1 0 0 1 2 3)', 'translate(1,2) skewX(3)', 'translate(1 2) scale(-1 1)', undefined]) assert.equal(frameOf(other), null, String(other));
+});
+
+test('a thing is moved and taken away without a change of anything else', () => {
+  const picture = pictureOf(FOREIGN);
+  const [first, second] = picture.things;
+  assert.ok(first && second);
+  const frame = { x: 10, y: 0, angle: 0, sx: 1, sy: 1 };
+  const moved = spliced(FOREIGN, withFrame(FOREIGN, first, frame));
+  assert.equal(moved.replace('<g transform="translate(10 0)">', '').replace('odd:label="A &amp; B"/></g>', 'odd:label="A &amp; B"/>'), FOREIGN);
+  const again = pictureOf(moved).things[0];
+  assert.ok(again?.frame, 'its frame is known again');
+  assert.equal(spliced(moved, withFrame(moved, again, { ...frame, x: 0, y: 5 })), moved.replace('translate(10 0)', 'translate(0 5)'));
+  assert.equal(pictureOf(spliced(FOREIGN, without(picture, new Set([0])))).things.length, 2);
+  for (const wrong of ['', '<svg>', '<svg><g></svg>', '<html></html>', '<svg></svg><svg></svg>', '<!-- <svg/>', '<svg a="></svg>', '<s:svg xmlns:s="http://www.w3.org/2000/svg"/>'])
+    assert.throws(() => pictureOf(wrong), Unreadable);
+});
+
+test('each part has a name in each language, and is bound in the picture that uses all', () => {
+  const parts = readdirSync(new URL('../../examples/parts/', import.meta.url)).filter((name) => name.endsWith('.svg') && name !== 'gallery.svg');
+  assert.ok(parts.length >= 15);
+  const chart = example('parts/gallery.g7');
+  const shown = pictureOf(example('parts/gallery.svg')).things;
+  for (const name of parts) {
+    const id = name.replace('.svg', '');
+    assert.ok(`picture.part.${id}` in words, id);
+    const things = shown.filter((t) => t.part === id);
+    assert.equal(things.length, 1, id);
+    assert.ok(things.every((t) => t.hands.length > 0 || t.names.some((n) => chart.includes(`    ${n}.`))), `${id} follows something`);
+  }
+});
+
+test('a picture is drawn on a telephone, in French', async () => {
+  const hand = await telephone(b, site, 'tank.g7', undefined, { language: 'fr' });
+  const { page } = hand;
+  await hand.press('Conduite');
+  await hand.press('Dessiner l’image');
+  const dialog = page.getByRole('dialog', { name: 'Image de Tank' });
+  await dialog.locator('.page').waitFor();
+  await hand.press('Ajouter : Cuve');
+  await hand.press('Variables');
+  assert.deepEqual(await hand.unfit(), []);
+  // The part that was just put is selected, so a tap on a variable binds it.
+  await dialog.getByRole('button', { name: /^level/ }).tap();
+  await dialog.getByText('tank1_liquid.level').waitFor();
+  assert.deepEqual(await hand.unfit(), []);
+  assert.deepEqual(await axe(page), []);
+  const before = await box(dialog.locator('[data-thing="0"]'));
+  const from: [number, number] = [before.x + before.width / 2, before.y + before.height / 2];
+  await hand.slide([from], [[from[0] + 60, from[1]]]);
+  await until(async () => (await box(dialog.locator('[data-thing="0"]'))).x > before.x + 30, 'a finger moves it');
+  await hand.press('Enregistrer l’image');
+  await dialog.getByRole('status').filter({ hasText: 'tank.svg est gardé' }).waitFor();
+  await page.context().close();
 });

@@ -139,7 +139,8 @@ export class Sheet {
     if (!thing) return '';
     const title = [...inside(thing.element)].find((e) => local(e) === 'title');
     const said = title ? this.text.slice(title.open, title.close).trim() : '';
-    return said || thing.names[0] || thing.part || local(content(thing));
+    const name = thing.part === null ? thing.names[0] : thing.names[0]?.split('_')[0];
+    return said || name || thing.part || local(content(thing));
   }
 
   // Changes of the drawing

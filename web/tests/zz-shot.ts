@@ -1,0 +1,37 @@
+import { readFileSync } from 'node:fs';
+import { browser, open, playground } from './lib';
+import { telephone } from './finger';
+const ex = (p: string) => readFileSync(new URL(`../../examples/parts/${p}`, import.meta.url), 'utf8');
+const b = await browser();
+const site = await playground({ 'gallery.g7': ex('gallery.g7'), 'gallery.svg': ex('gallery.svg') });
+for (const dark of [false, true]) {
+  const page = await open(b, site, 'gallery.g7', { width: 1280, height: 760 });
+  if (dark) await page.emulateMedia({ colorScheme: 'dark' });
+  page.on('console', (m) => console.log(m.text()));
+  page.on('pageerror', (m) => console.log(m.message));
+  await page.getByRole('tab', { name: 'Operate' }).click();
+  await page.getByRole('button', { name: 'Run', exact: true }).first().click();
+  await page.locator('.picture [data-g7="lamp1"]').waitFor();
+  await page.getByRole('button', { name: 'Larger' }).click();
+  await page.locator('.picture [data-g7-press]').focus();
+  await page.keyboard.press('Enter');
+  await page.waitForTimeout(dark ? 4700 : 2500);
+  await page.screenshot({ path: `/tmp/h1-run-${dark ? 'dark' : 'light'}.png` });
+  await page.context().close();
+}
+const hand = await telephone(b, site, 'gallery.g7');
+const page = hand.page;
+page.on('pageerror', (m) => console.log(m.message));
+await hand.press('Operate');
+await hand.press('Edit picture');
+await page.getByRole('dialog', { name: /Picture of/ }).locator('.page').waitFor();
+await page.waitForTimeout(400);
+const at = await page.getByRole('dialog').locator('[data-thing="0"]').boundingBox();
+await hand.tap([at!.x + at!.width / 2, at!.y + at!.height / 2]);
+await page.screenshot({ path: '/tmp/h1-phone1.png' });
+await hand.press('Properties');
+await page.waitForTimeout(200);
+await page.screenshot({ path: '/tmp/h1-phone2.png' });
+console.log(await hand.unfit());
+await b.done();
+await site.stop();
