@@ -1,7 +1,9 @@
 // Stories of the picture editor: a plant without a picture gets one, whose parts follow the run; a picture that was drawn
 // elsewhere stays to the byte where nobody changed it.
 import assert from 'node:assert/strict';
-import { readdirSync, readFileSync } from 'node:fs';
+import { mkdtempSync, readdirSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
 import { after, before, test } from 'node:test';
 import type { Locator } from 'playwright-core';
 import { picture as words } from '../src/lib/words/picture';
@@ -10,7 +12,7 @@ import { framed, frameOf, placeOf, transformOf } from '../src/picture/frame';
 import { spliced, Unreadable } from '../src/picture/markup';
 import { pictureOf, withFrame, without } from '../src/picture/things';
 import { telephone } from './finger';
-import { axe, box, browser, done, open, playground, textOf, until, type Opened, type Site } from './lib';
+import { axe, box, browser, done, open, playground, serve, textOf, until, type Opened, type Site } from './lib';
 
 const example = (path: string) => readFileSync(new URL(`../../examples/${path}`, import.meta.url), 'utf8');
 
@@ -237,6 +239,57 @@ test('a picture with changes is not closed without a word', async () => {
   await dialog.getByRole('button', { name: 'Close without saving' }).click();
   await dialog.waitFor({ state: 'detached' });
   assert.equal(await textOf(page), TANK);
+  await done(page);
+});
+
+test('in a folder the picture is a file, and another one of its name is not overwritten unseen', async () => {
+  const folder = mkdtempSync(join(tmpdir(), 'g7-picture-'));
+  const svg = join(folder, 'tank.svg');
+  writeFileSync(join(folder, 'tank.g7'), TANK);
+  const server = await serve(folder);
+  try {
+    const page = await open(b, server, 'tank.g7');
+    const dialog = await draw(page);
+    await dialog.getByRole('button', { name: 'Add: Tank' }).click();
+    await dialog.getByRole('button', { name: /^level/ }).click();
+    await dialog.getByRole('button', { name: 'Save picture' }).click();
+    await dialog.getByRole('status').filter({ hasText: 'tank.svg saved' }).waitFor();
+    const first = readFileSync(svg, 'utf8');
+    assert.match(first, /data-g7="tank1_liquid"/);
+    writeFileSync(svg, first.replace('viewBox="0 0 400 240"', 'viewBox="0 0 500 240"'));
+    await dialog.getByRole('button', { name: 'Add: Motor' }).click();
+    await dialog.getByRole('button', { name: 'Save picture' }).click();
+    await dialog.getByRole('status').filter({ hasText: 'tank.svg was changed elsewhere' }).waitFor();
+    assert.match(readFileSync(svg, 'utf8'), /viewBox="0 0 500 240"/, 'what somebody else wrote is there');
+    await dialog.getByRole('button', { name: 'Save picture' }).click();
+    await dialog.getByRole('status').filter({ hasText: 'tank.svg saved' }).waitFor();
+    assert.match(readFileSync(svg, 'utf8'), /data-g7="motor1"/, 'saving again replaces it');
+    await dialog.getByRole('button', { name: 'Close' }).click();
+    assert.equal(readFileSync(join(folder, 'tank.g7'), 'utf8'), TANK, 'the chart is saved by its own key');
+    await page.locator('.sheet').focus();
+    await page.keyboard.press('Control+s');
+    await until(async () => readFileSync(join(folder, 'tank.g7'), 'utf8').includes("view 'tank.svg' {\n    tank1_liquid.level := level / 100.0\n  }"), 'it has the view');
+    // The server refused one text, of which the browser tells.
+    assert.deepEqual(page.errors.filter((e) => !e.includes('412')), []);
+    await page.context().close();
+  } finally {
+    await server.stop();
+    rmSync(folder, { recursive: true, force: true });
+  }
+});
+
+test('a picture that is saved while the chart runs is shown at once', async () => {
+  const page = await open(b, site, 'gemma.g7');
+  await page.getByRole('tab', { name: 'Operate' }).click();
+  await page.getByRole('button', { name: 'Run', exact: true }).first().click();
+  await page.locator('.picture [data-g7="rod"]').waitFor();
+  await page.getByRole('button', { name: 'Edit picture' }).click();
+  const dialog = editor(page);
+  await dialog.getByRole('button', { name: 'Add: Lamp' }).click();
+  await dialog.getByRole('button', { name: /^advance/ }).click();
+  await saved(page, 'press.svg');
+  assert.equal(await page.locator('.picture [data-g7="lamp1"]').count(), 1, 'the panel has it');
+  await dialog.getByRole('button', { name: 'Close' }).click();
   await done(page);
 });
 
