@@ -1,4 +1,4 @@
-//! What the editor of a plant's picture needs to know: the picture with its bindings as the text has them, and what can
+//! All that the editor of a plant's picture needs to know: the picture with its bindings as the text has them, and what can
 //! be bound to an element.
 
 use g7_edit::Bound;
@@ -25,7 +25,7 @@ pub(crate) struct PictureName {
     role: NameRole,
     #[serde(rename = "type")]
     ty: NameType,
-    /// What a binding is given: the name, or what the plant drives an input with. Empty if a picture cannot show it.
+    /// The value of a binding to it: the name, or what the plant drives an input with. Empty if a picture cannot show it.
     value: String,
     /// True if a part of the picture can turn it.
     hand: bool,
@@ -155,7 +155,7 @@ fn variables(v: &VarDecl, role: NameRole, value: impl Fn(&str) -> (String, bool)
     v.names.iter().map(|n| row(&n.text)).collect()
 }
 
-/// What the plant drives an input with.
+/// The value with which the plant drives an input.
 fn driven<'p>(plant: &'p Plant, name: &str) -> Option<&'p Expr> {
     plant.items.iter().find_map(|i| match i {
         PlantItem::Drive(d) if d.input.kind.variable().as_deref() == Some(name) => Some(&d.value),

@@ -1,4 +1,4 @@
-// What can be bound to what: the effects that a part offers, those that every thing has, and the value that makes a variable
+// The effects that a variable can have: those that a part offers, those that every thing has, and the value that makes a variable
 // fit one. The effects themselves are those of `run/bindings.ts`; nothing here is new to the language.
 import type { PictureBinding, PictureName } from '../lib/protocol';
 import { attribute, type Element } from './markup';

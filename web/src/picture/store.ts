@@ -44,7 +44,8 @@ function freeName(file: OpenFile, plant: string): string {
   }
 }
 
-/** Saves a picture, and says in the text what it shows. Throws if either cannot be done; then nothing of it is. */
+/** Saves a picture, then says in the text what it shows. Throws if either cannot be done: the text then names no file that
+ * is not there, and saving again does the rest. */
 export async function savePicture(drawn: Drawn): Promise<void> {
   const { file, plant, sheet } = drawn;
   await file.settled();

@@ -1,4 +1,4 @@
-// What stands on the sheet, read from the text of the picture. A thing is an element that is moved, bound and deleted as a
+// The things on the sheet, read from the text of the picture. A thing is an element that is moved, bound and deleted as a
 // whole: a part of the palette, or an element that was drawn elsewhere. Below: `markup.ts`, the text; above: `sheet.svelte.ts`.
 import { attribute, indentOf, inside, local, parsed, spliced, Unreadable, wholeOf, withAttribute, type Element, type Splice } from './markup';
 import { frameOf, transformOf, type Frame } from './frame';
@@ -43,7 +43,7 @@ const shown = (element: Element): Element[] => element.children.filter((child) =
 /** The picture of a text; throws if it is none. */
 export function pictureOf(text: string): Picture {
   const root = parsed(text);
-  // What is written here has no prefix, and would be no SVG there.
+  // The editor writes elements without a prefix, which would be no SVG there.
   if (root.name !== 'svg') throw new Unreadable(`<${root.name}`);
   const layer = layerOf(root);
   return { text, root, layer, things: shown(layer).map(thing) };
