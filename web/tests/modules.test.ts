@@ -37,6 +37,12 @@ chart G {
   2 -> 1 when not a
 }
 
+plant Tank {
+  state level : REAL in 0.0 .. 9.0
+  drive b := level > 5.0
+  view 'tank.svg' { water.level := level / 9.0 }
+}
+
 test "on" {
   set a := TRUE
   expect M
@@ -68,6 +74,8 @@ const RARE: Message[] = [
   { do: 'prove_ways', file: 'a.g7', hash: 'of no text', question: 0, run: [] },
   { do: 'compare', files: ['a.g7', 'a.g7'], profiles: [null, 'iec61131'], states: 1000, mib: 64 },
   { do: 'sheets', file: 'a.g7', paper: 'a4', charts: ['G'], dossier: true, head: { title: '', author: '', company: '', revision: '', date: '' }, pictures: [] },
+  { do: 'plant_picture', file: 'a.g7', plant: 'Tank' },
+  { do: 'plant_picture', file: 'a.g7', plant: 'none' },
   { do: 'logic_read', tongue: 'il', text: 'LD a' },
   { do: 'merge', base: CHART, mine: CHART, theirs: `${CHART}// more\n` },
   { do: 'exercise_pack', folder: 'on', files: [{ file: 'statement.md', text: '# On\n' }, { file: 'template.g7', text: CHART }, { file: 'model.g7', text: CHART }] },

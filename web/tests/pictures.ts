@@ -20,6 +20,7 @@ const PANEL = join(ROOT, 'docs/book/src/online/img/panel.jpg');
 const DEMO = join(ROOT, 'docs/book/src/online/img/bench.jpg');
 const PROVE = join(ROOT, 'docs/book/src/prove/img/panel.jpg');
 const COMPARE = join(ROOT, 'docs/book/src/prove/img/compare.jpg');
+const SHEET = join(ROOT, 'docs/book/src/editor/img/picture.jpg');
 const STEP_MS = 20;
 
 /** A chart with a conflict and a step that nothing reaches, for the panel of proofs. */
@@ -76,6 +77,7 @@ const SCENES: Record<string, Scene> = {
   'modelling/conflict-priority.g7': { acts: [push('p1'), push('p2'), 200] },
   'modelling/machine.g7': { acts: [push('m'), 6000] },
   'modelling/or-into-and.g7': { acts: [push('p1'), 500] },
+  'parts/gallery.g7': { acts: [push('start'), 2300] },
   'structure/clamps.g7': { acts: [turn('start'), 300, turn('closed[1]'), 700], chart: 'Move' },
   'structure/enclosing.g7': { acts: [turn('on'), 7000], chart: 'Pumps' },
   'structure/gemma.g7': { acts: [turn('auto'), 2000, push('start'), 800], chart: 'Modes' },
@@ -296,6 +298,20 @@ async function compared(b: Browser): Promise<void> {
   }
 }
 
+/** The editor of pictures, with a tank whose level is bound. */
+async function drawing(b: Browser, site: Site): Promise<void> {
+  const page = await openWith(b, site, 'parts/gallery.g7', { theme: 'light' }, { width: 1280, height: 760 });
+  await page.getByRole('tab', { name: 'Operate' }).click();
+  await page.getByRole('button', { name: 'Edit picture' }).click();
+  const dialog = page.getByRole('dialog', { name: 'Picture of Gallery' });
+  await dialog.locator('.page').waitFor();
+  await dialog.getByRole('combobox', { name: 'On the sheet' }).selectOption({ label: 'tank1' });
+  await dialog.getByText('tank1_liquid.level').scrollIntoViewIfNeeded();
+  assert.deepEqual(page.errors, [], 'drawing');
+  await take(page, SHEET, 120_000);
+  await page.context().close();
+}
+
 const wanted = process.argv.slice(2);
 const files = examples();
 assert.deepEqual(Object.keys(files).filter((f) => f.endsWith('.g7') && !f.includes('/lib/')).sort(), Object.keys(SCENES).sort(), 'an example without a scene');
@@ -322,6 +338,10 @@ try {
     await take(page, README, 250_000);
     await page.context().close();
     process.stdout.write('README\n');
+  }
+  if (wanted.length === 0 || wanted.includes('drawing')) {
+    await drawing(b, site);
+    process.stdout.write('drawing\n');
   }
   if (wanted.length === 0 || wanted.includes('proofs')) {
     await proofs(b);

@@ -286,6 +286,15 @@ pub enum Gesture {
         /// The time in milliseconds.
         ms: f64,
     },
+    /// Gives a plant a picture, or changes what its picture shows.
+    View {
+        /// The plant.
+        plant: String,
+        /// The SVG file, relative to the file of the plant.
+        file: String,
+        /// All bindings that the picture has then.
+        bindings: Vec<Bound>,
+    },
     /// Changes the text directly, as the user types. The page sends its own changes as `splice`.
     #[cfg_attr(feature = "types", ts(skip))]
     Text {
@@ -309,6 +318,18 @@ pub enum What {
     Macro,
     /// An enclosing step.
     Enclosing,
+}
+
+/// A binding of a picture: an attribute of an element follows a value.
+#[derive(Clone, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "PictureBinding"))]
+pub struct Bound {
+    /// The element, by its name in the picture.
+    pub element: String,
+    /// The attribute.
+    pub attribute: String,
+    /// The value, an expression in the terms of the plant.
+    pub value: String,
 }
 
 /// The two ends of a link.

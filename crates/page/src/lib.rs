@@ -29,6 +29,7 @@ mod language;
 mod merge;
 mod overview;
 mod page;
+mod picture;
 mod places;
 mod printed;
 mod problems;

@@ -17,6 +17,7 @@ use crate::export::{self, Form, Out};
 use crate::language::{self, ActionForm, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::{Merged, merge};
 use crate::overview::{Overview, overview};
+use crate::picture::{self, PlantPicture};
 use crate::places::{Change, inward};
 use crate::printed::{self, Printed};
 use crate::prove::{self, Proof};
@@ -354,6 +355,13 @@ impl Answers for Page {
             return between::not_here();
         }
         printed::print(self.file(&file)?, wish)
+    }
+
+    fn plant_picture(&mut self, file: String, plant: String) -> Result<PlantPicture, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
+        picture::picture(self.file(&file)?, &plant)
     }
 
     fn logic(&mut self, file: String, id: String) -> Result<Vec<Piece>, Said> {

@@ -12,6 +12,7 @@ use crate::export::{Form, Out};
 use crate::language::{ActionForm, Coloured, Completion, Hit, Hover, Piece, Tables, Tongue};
 use crate::merge::Merged;
 use crate::overview::Overview;
+use crate::picture::PlantPicture;
 use crate::places::Change;
 use crate::printed::{Printed, Wish as Sheets};
 use crate::prove::{Both, Compared, Limits, Report as Proved, Ways, Wish as Refuted};
@@ -142,6 +143,9 @@ requests! {
 
     /// Sheets of paper: of the named charts or, with `dossier`, all that is known of the file.
     fn sheets(file: String, #[serde(flatten)] wish: Sheets) -> Printed;
+
+    /// The picture of a plant, and what can be bound in it.
+    fn plant_picture(file: String, plant: String) -> PlantPicture;
 
     /// The logic of a symbol in the languages of controllers.
     fn logic(file: String, id: String) -> Vec<Piece>;
@@ -323,6 +327,7 @@ impl Request {
         match self {
             Request::export(export { file, .. })
             | Request::sheets(sheets { file, .. })
+            | Request::plant_picture(plant_picture { file, .. })
             | Request::prove(prove { file, .. })
             | Request::test_why(test_why { file, .. })
             | Request::prove_ways(prove_ways { file, .. }) => vec![file.clone()],

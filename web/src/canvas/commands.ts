@@ -300,6 +300,13 @@ export const commands: Command[] = [
     when: () => true,
     run: () => editor.camera?.fit(),
   },
+  {
+    id: 'picture',
+    title: 'picture.draw',
+    name: () => t(editor.file?.look.pictures.length ? 'picture.edit' : 'picture.draw'),
+    when: () => (editor.file?.look.plants.length ?? 0) > 0,
+    run: () => (shell.dialog = 'picture'),
+  },
   { id: 'print', title: 'app.print', keys: ['Ctrl+P'], when: () => editor.file !== null, run: () => (shell.dialog = 'print') },
 ];
 

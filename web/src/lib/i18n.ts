@@ -8,6 +8,7 @@ import { gone } from './words/gone';
 import { names } from './words/names';
 import { operator } from './words/operator';
 import { panels } from './words/panels';
+import { picture } from './words/picture';
 import { print } from './words/print';
 import { prove } from './words/prove';
 import { run } from './words/run';
@@ -23,7 +24,7 @@ import { prefs } from './prefs.svelte';
 
 export type Words = Record<string, readonly [en: string, fr: string, pt: string]>;
 
-const table = { ...access, ...shell, ...canvas, ...course, ...exercise, ...out, ...gone, ...names, ...operator, ...panels, ...print, ...prove, ...run, ...share, ...start, ...text, ...together, ...why, ...wiring, ...work } as const;
+const table = { ...access, ...shell, ...canvas, ...course, ...exercise, ...out, ...gone, ...names, ...operator, ...panels, ...picture, ...print, ...prove, ...run, ...share, ...start, ...text, ...together, ...why, ...wiring, ...work } as const;
 
 export type Key = keyof typeof table;
 export type Language = 'en' | 'fr' | 'pt';

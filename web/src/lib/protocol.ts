@@ -582,6 +582,15 @@ export type Gesture =
     g: 'scan';
     /** The time in milliseconds. */
     ms: number;
+  }
+  | {
+    g: 'view';
+    /** The plant. */
+    plant: string;
+    /** The SVG file, relative to the file of the plant. */
+    file: string;
+    /** All bindings that the picture has then. */
+    bindings: Array<PictureBinding>;
   };
 
 /** The fault that ended a run, with its place in the text from which the run was started. */
@@ -718,6 +727,11 @@ export type Merged = {
   conflicts: number;
 };
 
+export type NameRole = 'state' | 'const' | 'parts' | 'output' | 'input';
+
+/** How a value is shown; an enumeration and what has a type of the file's own is `other`. */
+export type NameType = 'bool' | 'int' | 'real' | 'text' | 'other';
+
 /** An exported chart. */
 export type Out = {
   files: Array<OutFile>;
@@ -744,6 +758,38 @@ export type Pages = 'pl7';
 
 /** The kinds of symbols. */
 export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
+
+/** A binding of a picture: an attribute of an element follows a value. */
+export type PictureBinding = {
+  /** The element, by its name in the picture. */
+  element: string;
+  /** The attribute. */
+  attribute: string;
+  /** The value, an expression in the terms of the plant. */
+  value: string;
+};
+
+/** A state, a constant or a queue of the plant, an output or an input of the charts. */
+export type PictureName = {
+  name: string;
+  role: NameRole;
+  type: NameType;
+  /** What a binding is given: the name, or what the plant drives an input with. Empty if a picture cannot show it. */
+  value: string;
+  /** True if a part of the picture can turn it. */
+  hand: boolean;
+  /** The limits of a state as written. */
+  limits?: [string, string];
+  comment?: string;
+};
+
+/** The picture of a plant, and the names that it can show. */
+export type PlantPicture = {
+  /** The SVG file, if the plant has a picture. */
+  file?: string;
+  bindings: Array<PictureBinding>;
+  names: Array<PictureName>;
+};
 
 /** Sheets as SVG, all of one size. */
 export type Printed = {
@@ -1170,6 +1216,8 @@ export interface Requests {
     /** The pictures of the plants. */
     pictures: Array<Shelved>;
   };
+  /** The picture of a plant, and what can be bound in it. */
+  plant_picture: { file: string; plant: string };
   /** The logic of a symbol in the languages of controllers. */
   logic: { file: string; id: string };
   /** Converts logic in one of these languages to an expression of the text. */
@@ -1324,6 +1372,7 @@ export interface Answers {
   forms: Array<Form>;
   export: Out;
   sheets: Printed;
+  plant_picture: PlantPicture;
   logic: Array<LogicPiece>;
   logic_read: Text;
   style: Style;

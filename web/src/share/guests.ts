@@ -1,4 +1,4 @@
-// Pictures that came with a link. They are no files of the folder; the window keeps them as long as it is there.
+// Pictures that came with a link, or were drawn where nothing can be saved. They are no files of the folder; the window keeps them as long as it is there.
 const KEY = 'g7-guests';
 
 function stored(): Record<string, string> {
@@ -18,6 +18,14 @@ class Guests {
 
   put(name: string, text: string): void {
     this.#texts.set(name, text);
+    this.#keep();
+  }
+
+  drop(name: string): void {
+    if (this.#texts.delete(name)) this.#keep();
+  }
+
+  #keep(): void {
     try {
       sessionStorage.setItem(KEY, JSON.stringify(Object.fromEntries(this.#texts)));
     } catch {

@@ -22,7 +22,8 @@ export async function parcelOf(file: OpenFile): Promise<Parcel> {
   return { file: file.name, text: file.text, uses, pictures };
 }
 
-/** The text of a picture that a file names: that of its exercise, one that came with a link, or that of the folder. */
+/** The text of a picture that a file names: that of its exercise, one that came with a link or was drawn in this window, or
+ * that of the folder. */
 export async function readPicture(file: string, name: string): Promise<string> {
   const path = beside(file, name);
   return (await exercises.picture(file, name)) ?? guests.find(path) ?? (await server.read(path)).text;

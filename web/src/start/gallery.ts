@@ -12,6 +12,7 @@ const FOLDERS: [string, Key][] = [
   ['structure', 'start.folder.structure'],
   ['actions', 'start.folder.actions'],
   ['modelling', 'start.folder.modelling'],
+  ['parts', 'start.folder.parts'],
 ];
 
 export interface Group {

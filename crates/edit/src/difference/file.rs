@@ -7,6 +7,7 @@ use super::chart;
 use super::item;
 use super::lines::Sheet;
 use super::list::{Block, Style, list};
+use super::plant;
 use crate::draft::Draft;
 
 /// Writes the whole file.
@@ -31,6 +32,7 @@ impl Style<Item> for Items<'_, '_> {
             (Item::Chart(a), Item::Chart(b)) => chart::edit(sheet, self.draft, a, b),
             (Item::Layout(a), Item::Layout(b)) => edit_layout(sheet, a, b),
             (Item::Var(a), Item::Var(b)) => item::edit_variable(sheet, self.draft, a, b),
+            (Item::Plant(a), Item::Plant(b)) => plant::edit(sheet, self.draft, a, b),
             (Item::Profile(a), Item::Profile(b)) if a.name != b.name => {
                 let tokens = sheet.tokens(a.at.0.start as usize, a.at.0.end as usize);
                 if let Some(word) = tokens.get(1) {

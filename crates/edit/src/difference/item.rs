@@ -9,7 +9,7 @@ use super::lines::{Sheet, reindent};
 use super::list::{Block, Style, list};
 use crate::draft::{Draft, is_fresh};
 
-fn expr_text(e: &Expr, draft: &Draft<'_>) -> String {
+pub(super) fn expr_text(e: &Expr, draft: &Draft<'_>) -> String {
     draft.typed(e.at.0).unwrap_or_else(|| print_expr(e))
 }
 

@@ -8,6 +8,7 @@ mod file;
 mod item;
 mod lines;
 mod list;
+mod plant;
 
 use std::collections::{BTreeMap, HashMap};
 

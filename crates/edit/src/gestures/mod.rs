@@ -20,6 +20,7 @@ mod rename;
 mod settings;
 mod table;
 mod unread;
+mod view;
 
 pub(crate) use fields::actions;
 pub use heal::Joined;
@@ -28,6 +29,7 @@ pub(crate) use hold::hold;
 pub use rename::Renaming;
 pub(crate) use rename::{rename, rename_at};
 pub(crate) use table::renamed_row;
+pub(crate) use view::binding_at;
 
 use g7_model::say;
 
@@ -78,6 +80,7 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Switch { name, on } => settings::switch(d, name, *on),
         Gesture::Bound { n } => settings::bound(d, *n),
         Gesture::Scan { ms } => settings::scan(d, *ms),
+        Gesture::View { plant, file, bindings } => view::view(d, plant, file, bindings),
         Gesture::Rename { .. } | Gesture::Text { .. } => {
             refuse(say!("this gesture is not one of the drawing"))
         }

@@ -25,6 +25,7 @@ export const start = {
   'start.folder.workcell': ['Transport workcell', 'Cellule de transport', 'Célula de transporte'],
   'start.folder.structure': ['Structure: macro-steps, tasks, forcing, enclosing', 'Structure : macro-étapes, tâches, forçage, encapsulation', 'Estrutura: macroetapas, tarefas, forçagem, encapsulamento'],
   'start.folder.actions': ['Actions, qualifiers, counters, timers', 'Actions, qualificatifs, compteurs, temporisations', 'Ações, qualificadores, contadores, temporizadores'],
+  'start.folder.parts': ['Parts of pictures', 'Éléments d’images', 'Peças de imagens'],
   'start.folder.modelling': ['Modelling: conflicts and their cures', 'Modélisation : les conflits et leurs remèdes', 'Modelação: conflitos e as suas soluções'],
   'start.blank': ['Blank chart', 'Grafcet vide', 'Grafcet vazio'],
   'start.blank.about': ['one initial step', 'une étape initiale', 'uma etapa inicial'],
