@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use g7_draw::{Bends, End, Look, Options, Picture, Point, Rect};
-use g7_edit::{ChartSort, ItemId, Sort};
+use g7_draw::{ActionForms, Bends, End, Look, Options, Picture, Point, Rect};
+use g7_edit::{ChartSort, DrawnAs, ItemId, Sort, StackedAs};
 use g7_ide::ids;
 use g7_ide::{File, Positions, Readable};
 use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Said, Step, StepKind, Transition, say};
@@ -26,6 +26,9 @@ pub(crate) enum Standard {
 pub(crate) enum Pages {
     Pl7,
 }
+
+/// The name under which the page asks for all charts of a file on one sheet; no chart can have it.
+const SHEET: &str = "*";
 
 /// The drawing that the page asks for.
 #[derive(Clone, Debug, Deserialize)]
@@ -86,6 +89,8 @@ pub(crate) enum Part {
     Link,
     Connector,
     Comment,
+    /// The name of a chart on a sheet with several; its anchor is the place of the origin of the chart.
+    Title,
     /// It is only drawn.
     #[default]
     Text,
@@ -100,6 +105,8 @@ pub(crate) struct Drawn {
     /// True if the drawing shows an earlier text, because the present one has syntax errors.
     stale: bool,
     area: Area,
+    /// How the actions of steps without a choice of their own stand.
+    actions: StackedAs,
     #[serde(skip)]
     pub(crate) items: Vec<Item>,
 }
@@ -156,6 +163,12 @@ pub(crate) struct Item {
     /// The bends that the text gives a link: true if it follows them, false if they do not fit at present.
     #[serde(skip_serializing_if = "Option::is_none")]
     bent: Option<bool>,
+    /// The form that the text gives a link, whatever the drawing could do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    form: Option<DrawnAs>,
+    /// How the actions of a step stand, where it has a choice of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stacked: Option<StackedAs>,
 }
 
 impl Item {
@@ -166,12 +179,12 @@ impl Item {
         // `picture` is compared last, because it is long.
         let Item { id: _, part, area: _, picture, from: _, to: _, square, bar, text, at, .. } = self;
         let Item { name, label, comment, source, priority, steps, .. } = self;
-        let Item { step, expansion, encloses, initial, ends, held, bent, .. } = self;
+        let Item { step, expansion, encloses, initial, ends, held, bent, form, stacked, .. } = self;
         let same = (part, name, label, comment) == (&old.part, &old.name, &old.label, &old.comment)
             && (source, priority, steps) == (&old.source, &old.priority, &old.steps)
             && (step, expansion, encloses, initial)
                 == (&old.step, &old.expansion, &old.encloses, &old.initial)
-            && (held, bent) == (&old.held, &old.bent)
+            && (held, bent, form, stacked) == (&old.held, &old.bent, &old.form, &old.stacked)
             && same_ends(ends.as_ref(), old.ends.as_ref());
         let by = if same { picture.moved_from(&old.picture) } else { None }?;
         let boxes = [(*square, old.square), (*bar, old.bar), (*text, old.text)];
@@ -197,6 +210,9 @@ fn same_ends(ends: Option<&[String; 2]>, old: Option<&[String; 2]>) -> bool {
 /// Draws a chart of a file.
 #[inline(never)]
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
+    if wish.chart == SHEET {
+        return sheet(file.drawn(), wish);
+    }
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let has = |document: &Document| document.charts().any(|c| find(&c));
     let readable = file.drawn_chart(&wish.chart);
@@ -215,6 +231,47 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
     }
 }
 
+/// All charts of a document on one sheet, each under its title.
+#[inline(never)]
+fn sheet(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
+    let document = readable.document;
+    let options = Options { pages: false, ..options(wish) };
+    let drawings = g7_draw::draw_all(document, document.charts(), &options);
+    let arranged = g7_draw::together(document, &drawings);
+    let area = arranged.iter().map(|a| a.area).reduce(|all, area| all.union(&area)).unwrap_or_default();
+    let mut items = Vec::new();
+    for ((chart, drawing), place) in document.charts().zip(drawings).zip(arranged) {
+        let names = Names::new(readable, chart);
+        let own = drawing.items.into_iter().map(|i| i.moved(place.by)).enumerate();
+        items.extend(own.map(|(n, i)| names.item(n, i)));
+        let (from, to) = readable.units(chart.at.0);
+        if let Some(area) = place.frame.area() {
+            let id = ItemId::other(&*chart.name.text, items.len()).to_string();
+            items.push(Item { id, area: Area(area), picture: place.frame, from, to, ..Item::default() });
+        }
+        items.push(Item {
+            id: ItemId::chart(&*chart.name.text).to_string(),
+            part: Part::Title,
+            area: Area(place.title.area().unwrap_or_default()),
+            picture: place.title,
+            from,
+            to,
+            at: Some(Spot(place.by)),
+            name: Some(chart.name.text.to_string()),
+            comment: chart.comment.as_deref().map(str::to_owned),
+            ..Item::default()
+        });
+    }
+    Ok(Drawn {
+        chart: wish.chart.clone(),
+        kind: ChartSort::Chart,
+        stale: readable.stale,
+        area: Area(area),
+        actions: StackedAs::Column,
+        items: unique(items),
+    })
+}
+
 fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
     let options = options(wish);
     let find = |c: &&Chart| *c.name.text == *wish.chart;
@@ -230,6 +287,7 @@ fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
         kind: sort(chart.kind),
         stale: readable.stale,
         area: Area(drawing.area),
+        actions: names.forms.usual.into(),
         items: unique(drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect()),
     })
 }
@@ -266,6 +324,7 @@ struct Names<'a> {
     transition_ids: Vec<String>,
     /// The comments of the layout section.
     comments: Vec<&'a str>,
+    forms: ActionForms<'a>,
 }
 
 impl<'a> Names<'a> {
@@ -279,6 +338,7 @@ impl<'a> Names<'a> {
             step_ids: chart.steps().map(|s| ids::step(name, &s.name.text)).collect(),
             transition_ids: (0..transitions.len()).map(|n| ids::transition(name, n)).collect(),
             transitions,
+            forms: g7_draw::action_forms(readable.document, chart),
             comments: g7_draw::comments(readable.document, chart).map(|(text, _)| text).collect(),
         }
     }
@@ -299,7 +359,7 @@ impl<'a> Names<'a> {
             g7_draw::Part::Transition { transition, bar, text } => {
                 self.transition(transition, bar, text, base)
             }
-            g7_draw::Part::Link { from, to, held, bends, .. } => {
+            g7_draw::Part::Link { from, to, held, bends, form, .. } => {
                 let id = ItemId::link(chart, self.end(from), self.end(to)).to_string();
                 let bent = match bends {
                     Bends::None => None,
@@ -307,11 +367,13 @@ impl<'a> Names<'a> {
                     Bends::Waived => Some(false),
                 };
                 let ends = Some([self.end_id(from), self.end_id(to)]);
-                Item { id, part: Part::Link, ends, held, bent, ..base }
+                let form = form.map(DrawnAs::from);
+                Item { id, part: Part::Link, ends, held, bent, form, ..base }
             }
-            g7_draw::Part::Connector { from, to, leaving, .. } => {
+            g7_draw::Part::Connector { from, to, leaving, form, .. } => {
                 let id = ItemId::connector(chart, self.end(from), self.end(to), leaving).to_string();
-                Item { id, part: Part::Connector, ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+                let (ends, form) = (Some([self.end_id(from), self.end_id(to)]), form.map(DrawnAs::from));
+                Item { id, part: Part::Connector, ends, form, ..base }
             }
             g7_draw::Part::Comment { comment, place } => {
                 let id = ItemId::note(chart, comment as usize).to_string();
@@ -346,6 +408,7 @@ impl<'a> Names<'a> {
             encloses: opened.collect(),
             expansion,
             initial: step.initial,
+            stacked: self.forms.own(step).map(StackedAs::from),
             ..base
         }
     }

@@ -50,8 +50,8 @@ export const commands: Command[] = [
     keys: ['Enter'],
     near: true,
     icon: 'chevron',
-    when: () => !!editor.one?.macro || !!editor.one?.encloses?.length,
-    run: () => editor.one && editor.open(editor.one),
+    when: () => !!editor.one?.macro || !!editor.one?.encloses?.length || one('title'),
+    run: () => editor.one && editor.enter(editor.one),
   },
   {
     id: 'receptivity',
@@ -133,6 +133,23 @@ export const commands: Command[] = [
     run: () => editor.straighten(),
   },
   {
+    id: 'otherForm',
+    title: 'cmd.asJump',
+    name: () => t(one('connector') ? 'cmd.asLine' : 'cmd.asJump'),
+    keys: ['J'],
+    near: true,
+    icon: 'target',
+    when: () => one('link') || one('connector'),
+    run: () => editor.otherForm(),
+  },
+  {
+    id: 'stacked',
+    title: 'cmd.row',
+    when: () => step() && (editor.scene?.actions.get(id())?.length ?? 0) > 1,
+    checked: () => (editor.one?.stacked ?? editor.scene?.drawing.actions) === 'row',
+    run: () => editor.stackOtherwise(),
+  },
+  {
     id: 'why',
     title: 'why.symbol',
     keys: ['W'],
@@ -144,7 +161,7 @@ export const commands: Command[] = [
     id: 'nextLink',
     title: 'cmd.nextLink',
     keys: ['L'],
-    when: () => step() || transition() || one('link'),
+    when: () => step() || transition() || one('link') || one('connector'),
     run: () => editor.nextLink(),
   },
   {
