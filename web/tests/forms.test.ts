@@ -24,13 +24,30 @@ chart G2 {
   11 -> 10 when b
 }
 `;
+const MACRO = `input a : BOOL
+
+chart Main {
+  initial step 0
+  macro step M1 = Fill
+  0 -> M1 when a
+  M1 -> 0 when not a
+}
+
+macrochart Fill {
+  entry step E1
+  step 1
+  exit step S1
+  E1 -> 1 when a
+  1 -> S1 when not a
+}
+`;
 const BACK = 'G1/l/t:3>s:0';
 
 let b: Awaited<ReturnType<typeof browser>>;
 let site: Site;
 
 before(async () => {
-  site = await playground({ 'chart.g7': CHART });
+  site = await playground({ 'chart.g7': CHART, 'macro.g7': MACRO });
   b = await browser();
 });
 
@@ -126,9 +143,38 @@ test('the charts of a file stand on one sheet, are arranged by their titles and 
   await page.getByRole('button', { name: 'Arrange in rows' }).click();
   await until(async () => !/sheet at/.test(await textOf(page)), 'no chart has a place any more');
   await drawn(page);
+  // A run shows all charts.
+  await page.keyboard.press('Control+z');
+  await page.keyboard.press('Control+z');
+  await page.getByRole('button', { name: 'Run', exact: true }).click();
+  for (const id of ['G1/s/0', 'G2/s/10']) {
+    await until(async () => /active/.test((await item(page, id).getAttribute('aria-label')) ?? ''), `${id} is active`);
+  }
   await choose(page, 'G2');
   await page.keyboard.press('Enter');
   await until(async () => (await item(page, 'G1/s/0').count()) === 0, 'only the opened chart is shown');
   assert.equal(await item(page, 'G2/s/10').count(), 1);
+  await done(page);
+});
+
+test('the expansion of a macro-step opens beside it, and closes by the same key', async () => {
+  const page = await open(b, site, 'macro.g7');
+  await choose(page, 'Main/s/M1');
+  await page.keyboard.press('e');
+  await item(page, 'Fill/s/E1').waitFor({ state: 'attached' });
+  await drawn(page);
+  for (const id of ['Main/s/0', 'Main/s/M1', 'Fill/s/1', 'Fill/s/S1', 'Fill']) assert.equal(await item(page, id).count(), 1, id);
+  const [outer, inner] = [await box(item(page, 'Main/s/M1').locator('.g7-box').first()), await box(item(page, 'Fill/s/E1').locator('.g7-box').first())];
+  assert.ok(inner.x > outer.x + outer.width, 'it stands at the right of its macro-step');
+  assert.equal(await textOf(page), MACRO, 'no file keeps it');
+  // A gesture in the expansion is one of the expansion.
+  await choose(page, 'Fill/s/1');
+  await page.keyboard.press('i');
+  await until(async () => /initial step 1/.test(await textOf(page)), 'the step of the expansion is initial');
+  await page.keyboard.press('Control+z');
+  await until(async () => (await textOf(page)) === MACRO, 'and is not any more');
+  await choose(page, 'Main/s/M1');
+  await page.keyboard.press('e');
+  await until(async () => (await item(page, 'Fill/s/E1').count()) === 0, 'it is closed again');
   await done(page);
 });

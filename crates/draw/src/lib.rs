@@ -47,4 +47,4 @@ pub use room::make_room;
 pub use rungs::{Element, Rung, rungs, rungs_svg};
 pub use svg::{sheet, style, svg};
 pub use text::{FONT_FAMILY, font, width};
-pub use together::{Arranged, together};
+pub use together::{Arranged, opened, together};

@@ -19,6 +19,8 @@ const BETWEEN: i32 = 600;
 const TITLE: i32 = 180;
 /// Text size of the comment beside the name.
 const SUBTITLE: i32 = 130;
+/// Distance from the frame round an opened chart to the chart and its title.
+const ROUND: i32 = 150;
 /// Distance from the title to the chart.
 const UNDER_TITLE: i32 = 180;
 
@@ -53,6 +55,27 @@ pub fn together(document: &Document, drawings: &[Drawing]) -> Vec<Arranged> {
         area: put(&area, by),
     };
     titles.into_iter().zip(boxes).zip(moves).map(arranged).collect()
+}
+
+/// A chart that is opened beside others: in a frame, joined by a thin line to the step that opens it. `square` is the
+/// square of that step on the sheet, `free` the corner right of which and below which there is room.
+#[inline(never)]
+pub fn opened(document: &Document, drawing: &Drawing, square: Rect, free: Point) -> Arranged {
+    let (title, frame) = title(&Nesting::of(document), drawing);
+    let parts = [title.area(), frame.area()].into_iter().flatten();
+    let inner = parts.fold(drawing.area, |all, part| all.union(&part));
+    let corner = Point { x: free.x + BETWEEN, y: free.y.max(square.y - ROUND) };
+    let by = Point { x: corner.x + ROUND - inner.x, y: corner.y + ROUND - inner.y };
+    let area = Rect { x: corner.x, y: corner.y, w: inner.w + 2 * ROUND, h: inner.h + 2 * ROUND };
+    let mut frame = Picture::default();
+    frame.rect("g7-frame", area.x, area.y, area.w, area.h);
+    let middle = square.y + square.h / 2;
+    // The line enters the frame beside its title if the step stands above or below the frame.
+    let entry = middle.clamp(area.y + ROUND, area.y + area.h - ROUND);
+    let bend = area.x - BETWEEN / 2;
+    let line = [(square.x + square.w, middle), (bend, middle), (bend, entry), (area.x, entry)];
+    frame.line("g7-frame", &line);
+    Arranged { by, title: title.moved(by), frame, area }
 }
 
 fn put(area: &Rect, by: Point) -> Rect {

@@ -10,6 +10,8 @@ use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Said, Step, StepKi
 use g7_rig::Source;
 use serde::{Deserialize, Serialize, Serializer};
 
+use crate::sheet;
+
 /// The standard whose symbols are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
@@ -42,23 +44,41 @@ pub(crate) struct Wish {
     pages: Option<Pages>,
     #[serde(default)]
     actions: Option<bool>,
+    /// The steps whose expansions and enclosed charts are drawn beside the chart, by their ids.
+    #[serde(default)]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
+    pub(crate) open: Vec<String>,
     /// The number of the drawing that the page has, 0 if none; absent if this one is not to be kept.
     #[serde(default)]
     pub(crate) since: Option<u64>,
 }
 
 impl Wish {
+    /// How the chart is to be drawn.
+    pub(crate) fn options(&self) -> Options {
+        Options {
+            look: match self.look {
+                None | Some(Standard::Iec60848) => Look::Iec60848,
+                Some(Standard::Sfc) => Look::Sfc,
+            },
+            actions: self.actions.unwrap_or(true),
+            pages: self.pages == Some(Pages::Pl7),
+            ..Options::default()
+        }
+    }
+
     /// The name under which the drawing is kept; the file stands first, on a line of its own.
     pub(crate) fn key(&self) -> String {
         let file = self.file.replace('\n', " ");
-        format!("{file}\n{}\n{:?}\n{:?}\n{:?}", self.chart, self.look, self.pages, self.actions)
+        let Wish { chart, look, pages, actions, open, .. } = self;
+        format!("{file}\n{chart}\n{look:?}\n{pages:?}\n{actions:?}\n{open:?}")
     }
 }
 
 /// A rectangle, sent as its left and upper edge, width, height.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Box", as = "[f64; 4]"))]
-pub(crate) struct Area(Rect);
+pub(crate) struct Area(pub(crate) Rect);
 
 impl Serialize for Area {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
@@ -100,13 +120,13 @@ pub(crate) enum Part {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Drawn {
-    chart: String,
-    kind: ChartSort,
+    pub(crate) chart: String,
+    pub(crate) kind: ChartSort,
     /// True if the drawing shows an earlier text, because the present one has syntax errors.
-    stale: bool,
-    area: Area,
+    pub(crate) stale: bool,
+    pub(crate) area: Area,
     /// How the actions of steps without a choice of their own stand.
-    actions: StackedAs,
+    pub(crate) actions: StackedAs,
     #[serde(skip)]
     pub(crate) items: Vec<Item>,
 }
@@ -116,8 +136,8 @@ pub(crate) struct Drawn {
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Shape", optional_fields))]
 pub(crate) struct Item {
     pub(crate) id: String,
-    part: Part,
-    area: Area,
+    pub(crate) part: Part,
+    pub(crate) area: Area,
     #[serde(skip)]
     pub(crate) picture: Picture,
     pub(crate) from: usize,
@@ -130,13 +150,13 @@ pub(crate) struct Item {
     text: Option<Area>,
     /// The anchor: the middle of the upper edge of a step, the middle of the bar of a transition.
     #[serde(skip_serializing_if = "Option::is_none")]
-    at: Option<Spot>,
+    pub(crate) at: Option<Spot>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
+    pub(crate) name: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     label: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    comment: Option<String>,
+    pub(crate) comment: Option<String>,
     /// The receptivity or the action as typed.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<String>,
@@ -172,6 +192,12 @@ pub(crate) struct Item {
 }
 
 impl Item {
+    /// A symbol with no more than its picture and its place in the text.
+    pub(crate) fn plain(id: &ItemId, part: Part, picture: Picture, (from, to): (usize, usize)) -> Item {
+        let area = Area(picture.area().unwrap_or_default());
+        Item { id: id.to_string(), part, area, picture, from, to, ..Item::default() }
+    }
+
     /// How far this symbol is moved from another one that is the same but for its number and its places in the
     /// text; `None` if it is another.
     #[inline(never)]
@@ -211,7 +237,7 @@ fn same_ends(ends: Option<&[String; 2]>, old: Option<&[String; 2]>) -> bool {
 #[inline(never)]
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
     if wish.chart == SHEET {
-        return sheet(file.drawn(), wish);
+        return Ok(sheet::all(file.drawn(), wish));
     }
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let has = |document: &Document| document.charts().any(|c| find(&c));
@@ -231,55 +257,17 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
     }
 }
 
-/// All charts of a document on one sheet, each under its title.
-#[inline(never)]
-fn sheet(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
-    let document = readable.document;
-    let options = Options { pages: false, ..options(wish) };
-    let drawings = g7_draw::draw_all(document, document.charts(), &options);
-    let arranged = g7_draw::together(document, &drawings);
-    let area = arranged.iter().map(|a| a.area).reduce(|all, area| all.union(&area)).unwrap_or_default();
-    let mut items = Vec::new();
-    for ((chart, drawing), place) in document.charts().zip(drawings).zip(arranged) {
-        let names = Names::new(readable, chart);
-        let own = drawing.items.into_iter().map(|i| i.moved(place.by)).enumerate();
-        items.extend(own.map(|(n, i)| names.item(n, i)));
-        let (from, to) = readable.units(chart.at.0);
-        if let Some(area) = place.frame.area() {
-            let id = ItemId::other(&*chart.name.text, items.len()).to_string();
-            items.push(Item { id, area: Area(area), picture: place.frame, from, to, ..Item::default() });
-        }
-        items.push(Item {
-            id: ItemId::chart(&*chart.name.text).to_string(),
-            part: Part::Title,
-            area: Area(place.title.area().unwrap_or_default()),
-            picture: place.title,
-            from,
-            to,
-            at: Some(Spot(place.by)),
-            name: Some(chart.name.text.to_string()),
-            comment: chart.comment.as_deref().map(str::to_owned),
-            ..Item::default()
-        });
-    }
-    Ok(Drawn {
-        chart: wish.chart.clone(),
-        kind: ChartSort::Chart,
-        stale: readable.stale,
-        area: Area(area),
-        actions: StackedAs::Column,
-        items: unique(items),
-    })
-}
-
 fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
-    let options = options(wish);
+    let options = wish.options();
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart = readable
         .document
         .charts()
         .find(find)
         .ok_or_else(|| say!("there is no chart `{name}`", name = wish.chart))?;
+    if !wish.open.is_empty() {
+        return Ok(sheet::opened(readable, chart, wish));
+    }
     let drawing = g7_draw::draw(readable.document, chart, &options);
     let names = Names::new(readable, chart);
     Ok(Drawn {
@@ -292,18 +280,6 @@ fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
     })
 }
 
-fn options(wish: &Wish) -> Options {
-    Options {
-        look: match wish.look {
-            None | Some(Standard::Iec60848) => Look::Iec60848,
-            Some(Standard::Sfc) => Look::Sfc,
-        },
-        actions: wish.actions.unwrap_or(true),
-        pages: wish.pages == Some(Pages::Pl7),
-        ..Options::default()
-    }
-}
-
 /// The charts that a step opens: its expansion, or the charts that it encloses.
 pub(crate) fn opens(step: &Step) -> impl Iterator<Item = &str> {
     let expansion = if let StepKind::Macro(name) = &step.kind { Some(&*name.text) } else { None };
@@ -314,7 +290,7 @@ pub(crate) fn opens(step: &Step) -> impl Iterator<Item = &str> {
     expansion.into_iter().chain(enclosed)
 }
 
-struct Names<'a> {
+pub(crate) struct Names<'a> {
     readable: Readable<'a>,
     chart: &'a Chart,
     steps: Vec<&'a Step>,
@@ -324,11 +300,11 @@ struct Names<'a> {
     transition_ids: Vec<String>,
     /// The comments of the layout section.
     comments: Vec<&'a str>,
-    forms: ActionForms<'a>,
+    pub(crate) forms: ActionForms<'a>,
 }
 
 impl<'a> Names<'a> {
-    fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
+    pub(crate) fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
         let name = &*chart.name.text;
         let transitions: Vec<&Transition> = chart.transitions().collect();
         Names {
@@ -344,7 +320,7 @@ impl<'a> Names<'a> {
     }
 
     #[inline(never)]
-    fn item(&self, number: usize, item: g7_draw::Item) -> Item {
+    pub(crate) fn item(&self, number: usize, item: g7_draw::Item) -> Item {
         let chart = &*self.chart.name.text;
         let (from, to) = self.readable.units(item.at);
         let base = Item { area: Area(item.area), picture: item.picture, from, to, ..Item::default() };
@@ -453,7 +429,7 @@ impl<'a> Names<'a> {
 
 /// Two steps with the same name are a problem of the chart, but they still get different ids.
 #[inline(never)]
-fn unique(mut items: Vec<Item>) -> Vec<Item> {
+pub(crate) fn unique(mut items: Vec<Item>) -> Vec<Item> {
     let mut seen: HashMap<&str, u32> = HashMap::with_capacity(items.len());
     let mut again = Vec::new();
     for (n, item) in items.iter().enumerate() {

@@ -2,6 +2,7 @@
 // list of shortcuts all use this table.
 import type { IconName } from '../lib/Icon.svelte';
 import { t, type Key } from '../lib/i18n';
+import { SHEET } from '../lib/ids';
 import { runs } from '../lib/runs.svelte';
 import { shell } from '../lib/shell.svelte';
 import { why } from '../run/why.svelte';
@@ -52,6 +53,14 @@ export const commands: Command[] = [
     icon: 'chevron',
     when: () => !!editor.one?.macro || !!editor.one?.encloses?.length || one('title'),
     run: () => editor.one && editor.enter(editor.one),
+  },
+  {
+    id: 'openBeside',
+    title: 'cmd.openBeside',
+    keys: ['E'],
+    when: () => step() && editor.chart !== SHEET && (!!editor.one?.macro || !!editor.one?.encloses?.length),
+    checked: () => editor.isOpened(editor.one),
+    run: () => editor.one && editor.openBeside(editor.one),
   },
   {
     id: 'receptivity',

@@ -8,6 +8,7 @@ import { page, Refused } from '../lib/page';
 import type { Box, Edited, Gesture, LinkForm, Undeclared } from '../lib/protocol';
 import type { Placed as Item } from '../lib/redrawn';
 import { choices, drawnFor } from '../lib/instances.svelte';
+import { opened } from '../lib/opened.svelte';
 import { shell } from '../lib/shell.svelte';
 import { Scene, type Point } from './scene';
 
@@ -211,6 +212,19 @@ class Editor {
     } else if (item.part === 'link') void this.apply({ g: 'insert', link: item.id, what: 'step' });
     else if (item.part === 'connector') this.follow(item);
     else if (item.part !== 'text') this.edit(item.id);
+  }
+
+  /** Draws the charts that a step opens beside the chart, or takes them away again. */
+  openBeside(item: Item): void {
+    const { file, chart } = this;
+    if (!file || chart === null) return;
+    opened.toggle(file.name, chart, item.id);
+  }
+
+  /** True if the charts that a step opens are drawn beside the chart. */
+  isOpened(item: Item | null): boolean {
+    const { file, chart } = this;
+    return !!file && chart !== null && !!item && opened.of(file.name, chart).includes(item.id);
   }
 
   /** Shows the chart that a macro-step or an enclosing step opens. */

@@ -1,7 +1,7 @@
 // The meaning of a press on the drawing: select, move, mark an area, draw a link. The camera moves
 // the view itself.
 import type { Placed as Item } from '../lib/redrawn';
-import { actionOf } from '../lib/ids';
+import { actionOf, SHEET } from '../lib/ids';
 import type { LinkEnd } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 import { bendsOf, moved, type Segment } from './bends';
@@ -35,7 +35,9 @@ type Doing =
 
 /** True if a symbol can be dragged; links only follow their symbols. */
 function held(item: Item | null): boolean {
-  return item !== null && ['step', 'transition', 'action', 'comment', 'title'].includes(item.part);
+  // A chart that is opened beside another stands where its step is.
+  if (item?.part === 'title') return editor.chart === SHEET;
+  return item !== null && ['step', 'transition', 'action', 'comment'].includes(item.part);
 }
 
 /** Keeps the click away that some browsers send when the finger is lifted: it would press the menu, which now lies under

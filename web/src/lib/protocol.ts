@@ -1185,6 +1185,8 @@ export interface Requests {
     look?: Standard | null;
     pages?: Pages | null;
     actions?: boolean | null;
+    /** The steps whose expansions and enclosed charts are drawn beside the chart, by their ids. */
+    open?: Array<string>;
     /** The number of the drawing that the page has, 0 if none; absent if this one is not to be kept. */
     since?: number | null;
   };

@@ -91,6 +91,7 @@ export const canvas = {
   'inspect.form.line': ['a line', "d'un trait", 'como uma linha'],
   'inspect.form.jump': ['a jump to the step', "par un renvoi à l'étape", 'como um salto para a etapa'],
   'inspect.noLine': ['No way is free for it as a line at present; the automatic layout breaks it off.', "Aucun chemin n'est libre pour l'instant ; la disposition automatique l'interrompt.", 'Nenhum caminho está livre por agora; a disposição automática interrompe-a.'],
+  'cmd.openBeside': ['Open its charts beside it', 'Ouvrir ses grafcets à côté', 'Abrir os seus grafcets ao lado'],
   'cmd.row': ['Actions side by side', 'Actions côte à côte', 'Ações lado a lado'],
   'inspect.stacked': ['Actions stand', 'Disposition des actions', 'Disposição das ações'],
   'inspect.stacked.chart': ['as in the whole chart', 'comme dans tout le grafcet', 'como em todo o grafcet'],

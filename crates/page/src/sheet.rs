@@ -1,0 +1,110 @@
+//! Drawings of several charts (decision 85): all of a file on one sheet, or a chart with those that its steps open beside it. Their
+//! symbols are the same as in drawings of one chart, so gestures, texts and runs need no second way.
+
+use g7_draw::{Arranged, Drawing, Options, Point};
+use g7_edit::{ChartSort, ItemId, StackedAs};
+use g7_ide::{Readable, ids};
+use g7_model::Chart;
+
+use crate::drawing::{Area, Drawn, Item, Names, Part, Spot, Wish, opens, sort, unique};
+
+/// All charts of a document on one sheet, each under its title.
+#[inline(never)]
+pub(crate) fn all(readable: Readable<'_>, wish: &Wish) -> Drawn {
+    let document = readable.document;
+    let options = Options { pages: false, ..wish.options() };
+    let drawings = g7_draw::draw_all(document, document.charts(), &options);
+    let arranged = g7_draw::together(document, &drawings);
+    let area = arranged.iter().map(|a| a.area).reduce(|all, area| all.union(&area)).unwrap_or_default();
+    let mut items = Vec::new();
+    for ((chart, drawing), place) in document.charts().zip(drawings).zip(arranged) {
+        put(readable, chart, drawing, Some(place), &mut items);
+    }
+    Drawn {
+        chart: wish.chart.clone(),
+        kind: ChartSort::Chart,
+        stale: readable.stale,
+        area: Area(area),
+        actions: StackedAs::Column,
+        items: unique(items),
+    }
+}
+
+/// A chart, and at its right those that the steps open which the wish names; steps of opened charts open theirs.
+#[inline(never)]
+pub(crate) fn opened(readable: Readable<'_>, chart: &Chart, wish: &Wish) -> Drawn {
+    let document = readable.document;
+    let options = Options { pages: false, ..wish.options() };
+    let first = g7_draw::draw(document, chart, &options);
+    let mut area = first.area;
+    let mut free = Point { x: area.x + area.w, y: area.y };
+    let mut shown: Vec<(&Chart, Drawing, Option<Arranged>)> = vec![(chart, first, None)];
+    let mut n = 0;
+    while let Some((around, drawing, place)) = shown.get(n) {
+        n += 1;
+        let by = place.as_ref().map_or_else(Point::default, |p| p.by);
+        let mut found = Vec::new();
+        for (number, step) in (0..).zip(around.steps()) {
+            if !wish.open.contains(&ids::step(&around.name.text, &step.name.text)) {
+                continue;
+            }
+            let square = drawing.items.iter().find_map(|i| match i.part {
+                g7_draw::Part::Step { step, square } if step == number => Some(square),
+                _ => None,
+            });
+            let Some(square) = square else { continue };
+            let square = g7_draw::Rect { x: square.x + by.x, y: square.y + by.y, ..square };
+            found.extend(opens(step).map(|name| (name, square)));
+        }
+        for (name, square) in found {
+            // A chart is shown once, however many steps open it.
+            if shown.iter().any(|(c, ..)| *c.name.text == *name) {
+                continue;
+            }
+            let Some(inner) = document.charts().find(|c| *c.name.text == *name) else { continue };
+            let drawing = g7_draw::draw(document, inner, &options);
+            let place = g7_draw::opened(document, &drawing, square, free);
+            free.y = place.area.y + place.area.h + g7_draw::U;
+            area = area.union(&place.area);
+            shown.push((inner, drawing, Some(place)));
+        }
+    }
+    let mut items = Vec::new();
+    for (inner, drawing, place) in shown {
+        put(readable, inner, drawing, place, &mut items);
+    }
+    Drawn {
+        chart: wish.chart.clone(),
+        kind: sort(chart.kind),
+        stale: readable.stale,
+        area: Area(area),
+        actions: g7_draw::action_forms(document, chart).usual.into(),
+        items: unique(items),
+    }
+}
+
+/// Adds the symbols of a chart at its place, under its title. Its frame comes first, so that a line to it runs behind
+/// symbols.
+fn put(
+    readable: Readable<'_>,
+    chart: &Chart,
+    drawing: Drawing,
+    place: Option<Arranged>,
+    items: &mut Vec<Item>,
+) {
+    let name = &*chart.name.text;
+    let at = readable.units(chart.at.0);
+    let by = place.as_ref().map_or_else(Point::default, |p| p.by);
+    if let Some(Arranged { title, frame, .. }) = place {
+        if frame.area().is_some() {
+            items.insert(0, Item::plain(&ItemId::other(name, items.len()), Part::Text, frame, at));
+        }
+        let mut item = Item::plain(&ItemId::chart(name), Part::Title, title, at);
+        item.at = Some(Spot(by));
+        item.name = Some(name.to_owned());
+        item.comment = chart.comment.as_deref().map(str::to_owned);
+        items.push(item);
+    }
+    let names = Names::new(readable, chart);
+    items.extend(drawing.items.into_iter().map(|i| i.moved(by)).enumerate().map(|(n, i)| names.item(n, i)));
+}
