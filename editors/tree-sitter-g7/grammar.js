@@ -451,8 +451,8 @@ module.exports = grammar({
     place: ($) =>
       choice(
         seq(choice($._placed, seq(kw("comment"), choice($.comment, $.string)), kw("sheet")), kw("at"), $._point),
-        seq(kw("actions"), optional(seq(kw("of"), kw("step"), $._name)), kw("in"), choice(kw("row"), kw("column"))),
-        seq(kw("link"), $._placed, "->", $._placed, choice($._bends, seq(kw("as"), choice(kw("line"), kw("jump"))))),
+        seq(kw("actions"), optional(seq(kw("of"), kw("step"), $._name)), kw("in"), choice("row", "column")),
+        seq(kw("link"), $._placed, "->", $._placed, choice($._bends, seq(kw("as"), choice("line", "jump")))),
       ),
     _bends: ($) => seq(kw("at"), $._point, repeat(seq(",", $._point))),
     _placed: ($) => choice(seq(kw("step"), $._name), seq(kw("transition"), choice($._name, seq("#", $.number)))),

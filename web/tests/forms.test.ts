@@ -136,7 +136,7 @@ test('the charts of a file stand on one sheet, are arranged by their titles and 
   await until(async () => /11 -> 12 when/.test(await textOf(page)), 'a step follows in the chart of the symbol');
   await page.keyboard.press('Escape');
   await page.keyboard.press('Escape');
-  // What belongs to no chart is refused with the words where it is done.
+  // A new step belongs to no chart: it is refused with the words where it is done.
   await page.keyboard.press('Insert');
   await page.getByText('Several charts are on this sheet').first().waitFor();
   // Back to rows, and into a chart by its title.

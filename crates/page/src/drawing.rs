@@ -10,8 +10,6 @@ use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Said, Step, StepKi
 use g7_rig::Source;
 use serde::{Deserialize, Serialize, Serializer};
 
-use crate::sheet;
-
 /// The standard whose symbols are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
@@ -28,9 +26,6 @@ pub(crate) enum Standard {
 pub(crate) enum Pages {
     Pl7,
 }
-
-/// The name under which the page asks for all charts of a file on one sheet; no chart can have it.
-const SHEET: &str = "*";
 
 /// The drawing that the page asks for.
 #[derive(Clone, Debug, Deserialize)]
@@ -236,9 +231,6 @@ fn same_ends(ends: Option<&[String; 2]>, old: Option<&[String; 2]>) -> bool {
 /// Draws a chart of a file.
 #[inline(never)]
 pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
-    if wish.chart == SHEET {
-        return Ok(sheet::all(file.drawn(), wish));
-    }
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let has = |document: &Document| document.charts().any(|c| find(&c));
     let readable = file.drawn_chart(&wish.chart);
@@ -265,9 +257,6 @@ fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
         .charts()
         .find(find)
         .ok_or_else(|| say!("there is no chart `{name}`", name = wish.chart))?;
-    if !wish.open.is_empty() {
-        return Ok(sheet::opened(readable, chart, wish));
-    }
     let drawing = g7_draw::draw(readable.document, chart, &options);
     let names = Names::new(readable, chart);
     Ok(Drawn {

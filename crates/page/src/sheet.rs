@@ -3,14 +3,30 @@
 
 use g7_draw::{Arranged, Drawing, Options, Point};
 use g7_edit::{ChartSort, ItemId, StackedAs};
-use g7_ide::{Readable, ids};
-use g7_model::Chart;
+use g7_ide::{File, Readable, ids};
+use g7_model::{Chart, Said};
 
-use crate::drawing::{Area, Drawn, Item, Names, Part, Spot, Wish, opens, sort, unique};
+use crate::drawing::{Area, Drawn, Item, Names, Part, Spot, Wish, drawing, opens, sort, unique};
+
+/// The name under which the page asks for all charts of a file on one sheet; no chart can have it.
+const SHEET: &str = "*";
+
+/// The drawing that a wish asks for: of one chart, or of several.
+pub(crate) fn drawn(file: &File, wish: &Wish) -> Result<Drawn, Said> {
+    if wish.chart == SHEET {
+        return Ok(all(file.drawn(), wish));
+    }
+    let readable = file.drawn_chart(&wish.chart);
+    let chart = readable.document.charts().find(|c| *c.name.text == *wish.chart);
+    match chart {
+        Some(chart) if !wish.open.is_empty() => Ok(opened(readable, chart, wish)),
+        _ => drawing(file, wish),
+    }
+}
 
 /// All charts of a document on one sheet, each under its title.
 #[inline(never)]
-pub(crate) fn all(readable: Readable<'_>, wish: &Wish) -> Drawn {
+fn all(readable: Readable<'_>, wish: &Wish) -> Drawn {
     let document = readable.document;
     let options = Options { pages: false, ..wish.options() };
     let drawings = g7_draw::draw_all(document, document.charts(), &options);
@@ -32,7 +48,7 @@ pub(crate) fn all(readable: Readable<'_>, wish: &Wish) -> Drawn {
 
 /// A chart, and at its right those that the steps open which the wish names; steps of opened charts open theirs.
 #[inline(never)]
-pub(crate) fn opened(readable: Readable<'_>, chart: &Chart, wish: &Wish) -> Drawn {
+fn opened(readable: Readable<'_>, chart: &Chart, wish: &Wish) -> Drawn {
     let document = readable.document;
     let options = Options { pages: false, ..wish.options() };
     let first = g7_draw::draw(document, chart, &options);

@@ -58,7 +58,7 @@ export const commands: Command[] = [
     id: 'openBeside',
     title: 'cmd.openBeside',
     keys: ['E'],
-    when: () => step() && editor.chart !== SHEET && (!!editor.one?.macro || !!editor.one?.encloses?.length),
+    when: () => step() && editor.chart !== SHEET && editor.elsewhere === null && (!!editor.one?.macro || !!editor.one?.encloses?.length),
     checked: () => editor.isOpened(editor.one),
     run: () => editor.one && editor.openBeside(editor.one),
   },

@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! Chart -> adrift, graph -> reduce -> tree -> shape, beside -> place -> route -> Placement
-//!                                               \-> moved -> forms -> bends -/  (layout section)
+//!                                            \-> moved -> unbroken -> bends -/  (layout section)
 //! ```
 //!
 //! A GRAFCET nearly always consists of sequences with branches in them. The graph is therefore
@@ -37,6 +37,7 @@ mod route;
 pub(crate) mod section;
 mod shape;
 mod tree;
+mod unbroken;
 mod way;
 
 use g7_model::{Chart, PlaceAt, Step, StepKind};
@@ -61,7 +62,7 @@ pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
             let auto = from_first(route::route(&shapes, &place::places(&shapes)), chart);
             let given = moved::given(chart, &graph, places);
             let mut placement = moved::moved(&graph, sizes, auto, &given, &forms);
-            forms::apply(&graph, sizes, &forms, &mut placement);
+            unbroken::apply(&graph, sizes, &forms, &mut placement);
             bends::bend(chart, &graph, sizes, places, &mut placement);
             return without_gaps(placement, graph.real);
         }

@@ -153,7 +153,7 @@ fn a_jump_stays_broken_off_where_its_symbols_are_placed() {
             assert_eq!((c.from, c.to, c.leaving), (was.from, was.to, was.leaving));
             assert_eq!(c.at.x, was.at.x + by.x, "{ends:?}");
             assert!((c.at.y - was.at.y - by.y).abs() < 200, "{ends:?} {c:?} {was:?}");
-            // What is drawn hangs together: it begins at its symbol.
+            // It hangs together: it begins at its symbol.
             if c.leaving {
                 let port = match c.from {
                     End::Step(n) => Point { y: p.steps[n as usize].y + 500, ..p.steps[n as usize] },
