@@ -1,7 +1,7 @@
 //! Drawings of several charts (decision 85): all of a file on one sheet, or a chart with those that its steps open beside it. Their
 //! symbols are the same as in drawings of one chart, so gestures, texts and runs need no second way.
 
-use g7_draw::{Arranged, Drawing, Options, Point};
+use g7_draw::{Arranged, Drawing, Options, Point, Rect};
 use g7_edit::{ChartSort, ItemId, StackedAs};
 use g7_ide::{File, Readable, ids};
 use g7_model::{Chart, Said};
@@ -46,48 +46,69 @@ fn all(readable: Readable<'_>, wish: &Wish) -> Drawn {
     }
 }
 
+/// A chart of a drawing with opened charts.
+struct Shown<'d> {
+    chart: &'d Chart,
+    drawing: Drawing,
+    /// Its place if a step opens it; the first chart has none.
+    place: Option<Arranged>,
+    /// Its box with title and frame.
+    area: Rect,
+    /// The number of steps that lead to it.
+    depth: usize,
+}
+
+impl<'d> Shown<'d> {
+    /// The charts that its open steps show, each with the square of its step.
+    fn wanted(&self, open: &[String]) -> Vec<(&'d str, Rect)> {
+        let by = self.place.as_ref().map_or_else(Point::default, |p| p.by);
+        let square = |number: u32| {
+            let found = self.drawing.items.iter().find_map(|i| match i.part {
+                g7_draw::Part::Step { step, square } if step == number => Some(square),
+                _ => None,
+            });
+            found.map(|s| Rect { x: s.x + by.x, y: s.y + by.y, ..s })
+        };
+        let steps = (0..).zip(self.chart.steps());
+        let open = steps.filter(|(_, s)| open.contains(&ids::step(&self.chart.name.text, &s.name.text)));
+        let squares = open.filter_map(|(n, step)| Some((step, square(n)?)));
+        squares.flat_map(|(step, square)| opens(step).map(move |name| (name, square))).collect()
+    }
+}
+
 /// A chart, and at its right those that the steps open which the wish names; steps of opened charts open theirs.
 #[inline(never)]
 fn opened(readable: Readable<'_>, chart: &Chart, wish: &Wish) -> Drawn {
     let document = readable.document;
     let options = Options { pages: false, ..wish.options() };
     let first = g7_draw::draw(document, chart, &options);
-    let mut area = first.area;
-    let mut free = Point { x: area.x + area.w, y: area.y };
-    let mut shown: Vec<(&Chart, Drawing, Option<Arranged>)> = vec![(chart, first, None)];
+    let mut shown = vec![Shown { chart, area: first.area, drawing: first, place: None, depth: 0 }];
     let mut n = 0;
-    while let Some((around, drawing, place)) = shown.get(n) {
+    while let Some(around) = shown.get(n) {
         n += 1;
-        let by = place.as_ref().map_or_else(Point::default, |p| p.by);
-        let mut found = Vec::new();
-        for (number, step) in (0..).zip(around.steps()) {
-            if !wish.open.contains(&ids::step(&around.name.text, &step.name.text)) {
-                continue;
-            }
-            let square = drawing.items.iter().find_map(|i| match i.part {
-                g7_draw::Part::Step { step, square } if step == number => Some(square),
-                _ => None,
-            });
-            let Some(square) = square else { continue };
-            let square = g7_draw::Rect { x: square.x + by.x, y: square.y + by.y, ..square };
-            found.extend(opens(step).map(|name| (name, square)));
-        }
-        for (name, square) in found {
+        let depth = around.depth + 1;
+        for (name, square) in around.wanted(&wish.open) {
             // A chart is shown once, however many steps open it.
-            if shown.iter().any(|(c, ..)| *c.name.text == *name) {
+            if shown.iter().any(|s| *s.chart.name.text == *name) {
                 continue;
             }
-            let Some(inner) = document.charts().find(|c| *c.name.text == *name) else { continue };
-            let drawing = g7_draw::draw(document, inner, &options);
+            let Some(chart) = document.charts().find(|c| *c.name.text == *name) else { continue };
+            let drawing = g7_draw::draw(document, chart, &options);
+            // At the right of the charts that are opened before it, under those that stand in the same column.
+            let before = shown.iter().filter(|s| s.depth < depth);
+            let above = shown.iter().filter(|s| s.depth == depth);
+            let free = Point {
+                x: before.map(|s| s.area.x + s.area.w).max().unwrap_or(0),
+                y: above.map(|s| s.area.y + s.area.h + g7_draw::U).max().unwrap_or(i32::MIN),
+            };
             let place = g7_draw::opened(document, &drawing, square, free);
-            free.y = place.area.y + place.area.h + g7_draw::U;
-            area = area.union(&place.area);
-            shown.push((inner, drawing, Some(place)));
+            shown.push(Shown { chart, drawing, area: place.area, place: Some(place), depth });
         }
     }
+    let area = shown.iter().map(|s| s.area).reduce(|all, area| all.union(&area)).unwrap_or_default();
     let mut items = Vec::new();
-    for (inner, drawing, place) in shown {
-        put(readable, inner, drawing, place, &mut items);
+    for Shown { chart, drawing, place, .. } in shown {
+        put(readable, chart, drawing, place, &mut items);
     }
     Drawn {
         chart: wish.chart.clone(),
