@@ -450,9 +450,11 @@ module.exports = grammar({
     layout_body: ($) => seq("{", items($.place), "}"),
     place: ($) =>
       choice(
-        seq(choice($._placed, seq(kw("comment"), choice($.comment, $.string))), kw("at"), $._point),
-        seq(kw("link"), $._placed, "->", $._placed, kw("at"), $._point, repeat(seq(",", $._point))),
+        seq(choice($._placed, seq(kw("comment"), choice($.comment, $.string)), kw("sheet")), kw("at"), $._point),
+        seq(kw("actions"), optional(seq(kw("of"), kw("step"), $._name)), kw("in"), choice("row", "column")),
+        seq(kw("link"), $._placed, "->", $._placed, choice($._bends, seq(kw("as"), choice("line", "jump")))),
       ),
+    _bends: ($) => seq(kw("at"), $._point, repeat(seq(",", $._point))),
     _placed: ($) => choice(seq(kw("step"), $._name), seq(kw("transition"), choice($._name, seq("#", $.number)))),
     _point: ($) => seq("(", optional("-"), $.number, ",", optional("-"), $.number, ")"),
 

@@ -3,7 +3,7 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, Document, Item as Entry, PlaceAt, Placed, Step, Transition};
+use g7_model::{ActionForm, Chart, Document, Item as Entry, PlaceAt, Placed, Step, Transition};
 
 use crate::ink::Picture;
 use crate::layout::layout;
@@ -23,13 +23,14 @@ pub(crate) struct Symbols<'a> {
 }
 
 /// Measures the room that each symbol of a chart needs.
-pub fn measure(_: &Document, chart: &Chart, options: &Options) -> Sizes {
-    Symbols::new(chart, options).sizes
+pub fn measure(document: &Document, chart: &Chart, options: &Options) -> Sizes {
+    Symbols::new(chart, places(document, chart), options).sizes
 }
 
 /// The places of the symbols of a chart on one sheet.
 pub fn placed(document: &Document, chart: &Chart, options: &Options) -> Placement {
-    layout(chart, &Symbols::new(chart, options).sizes, places(document, chart))
+    let places = places(document, chart);
+    layout(chart, &Symbols::new(chart, places, options).sizes, places)
 }
 
 /// Draws a chart.
@@ -57,7 +58,7 @@ pub fn draw_all<'a>(
 /// Draws a chart with the entries of its layout section.
 #[inline(never)]
 fn drawing(chart: &Chart, places: &[PlaceAt], options: &Options) -> Drawing {
-    let symbols = Symbols::new(chart, options);
+    let symbols = Symbols::new(chart, places, options);
     if options.pages {
         let paged = pages::place(chart, &symbols.sizes);
         return symbols.put(chart, &paged.placement, paged.frames, &paged.pages);
@@ -73,8 +74,8 @@ fn drawing(chart: &Chart, places: &[PlaceAt], options: &Options) -> Drawing {
 
 /// The symbols of a chart on one sheet, as strokes, and where they stand.
 pub(crate) fn inked(document: &Document, chart: &Chart, options: &Options) -> (Placement, Vec<Inked>) {
-    let symbols = Symbols::new(chart, options);
     let places = places(document, chart);
+    let symbols = Symbols::new(chart, places, options);
     let placement = layout(chart, &symbols.sizes, places);
     let mut all = symbols.inked(&placement, &[]);
     all.extend(notes(places));
@@ -89,7 +90,7 @@ pub fn comments<'a>(document: &'a Document, chart: &Chart) -> impl Iterator<Item
 fn comments_of(places: &[PlaceAt]) -> impl Iterator<Item = (&str, &PlaceAt)> {
     places.iter().filter_map(|p| match &p.what {
         Placed::Comment(text) => Some((&**text, p)),
-        Placed::Step(_) | Placed::Transition(_) | Placed::TransitionNumber(_) | Placed::Link(_) => None,
+        _ => None,
     })
 }
 
@@ -111,8 +112,51 @@ fn notes(places: &[PlaceAt]) -> Vec<Inked> {
     (0..).zip(comments_of(places)).map(note).collect()
 }
 
+/// How the actions of the steps of a chart stand, as its layout section says.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ActionForms<'a> {
+    /// Those of a step without a form of its own.
+    pub usual: ActionForm,
+    own: HashMap<&'a str, ActionForm>,
+}
+
+impl<'a> ActionForms<'a> {
+    /// The forms that the entries of a layout section give; the first entry counts.
+    fn new(places: &'a [PlaceAt]) -> ActionForms<'a> {
+        let mut usual = None;
+        let mut own = HashMap::new();
+        for place in places {
+            match &place.what {
+                Placed::Actions(None, form) => usual = usual.or(Some(*form)),
+                Placed::Actions(Some(step), form) => {
+                    if let Placed::Step(name) = &**step {
+                        own.entry(&*name.text).or_insert(*form);
+                    }
+                }
+                _ => {}
+            }
+        }
+        ActionForms { usual: usual.unwrap_or_default(), own }
+    }
+
+    /// The form that a step has of its own.
+    pub fn own(&self, step: &Step) -> Option<ActionForm> {
+        self.own.get(&*step.name.text).copied()
+    }
+
+    /// The form in which the actions of a step are drawn.
+    pub fn of(&self, step: &Step) -> ActionForm {
+        self.own(step).unwrap_or(self.usual)
+    }
+}
+
+/// How the actions of the steps of a chart stand.
+pub fn action_forms<'a>(document: &'a Document, chart: &Chart) -> ActionForms<'a> {
+    ActionForms::new(places(document, chart))
+}
+
 /// The entries of the layout section for this chart.
-fn places<'a>(document: &'a Document, chart: &Chart) -> &'a [PlaceAt] {
+pub(crate) fn places<'a>(document: &'a Document, chart: &Chart) -> &'a [PlaceAt] {
     let mut sections = document.items.iter().filter_map(|i| match i {
         Entry::Layout(l) if l.chart == chart.name => Some(l.places.as_slice()),
         _ => None,
@@ -132,8 +176,9 @@ fn alternatives(chart: &Chart) -> HashMap<&str, (usize, usize)> {
 
 impl<'a> Symbols<'a> {
     #[inline(never)]
-    pub(crate) fn new(chart: &'a Chart, options: &Options) -> Symbols<'a> {
-        let steps: Vec<_> = chart.steps().map(|s| (s, step(s, options))).collect();
+    pub(crate) fn new(chart: &'a Chart, places: &[PlaceAt], options: &Options) -> Symbols<'a> {
+        let forms = ActionForms::new(places);
+        let steps: Vec<_> = chart.steps().map(|s| (s, step(s, forms.of(s), options))).collect();
         let alternatives = alternatives(chart);
         let shape = |t: &'a Transition| {
             let at = |n: &g7_model::Name| alternatives.get(&*n.text).copied().unwrap_or_default();
@@ -207,8 +252,9 @@ impl<'a> Symbols<'a> {
             let points: Vec<(i32, i32)> = l.points.iter().map(|p| (p.x, p.y)).collect();
             picture.line("g7-link", &points);
             l.arrows.iter().for_each(|(tip, way)| arrow(&mut picture, *tip, *way));
-            let (from, to, held, bends) = (l.from, l.to, l.held, l.bends);
-            items.push(item(Part::Link { link: index, from, to, held, bends }, picture, self.span(from)));
+            let (from, to, held, bends, form) = (l.from, l.to, l.held, l.bends, l.form);
+            let part = Part::Link { link: index, from, to, held, bends, form };
+            items.push(item(part, picture, self.span(from)));
         }
     }
 
@@ -277,7 +323,8 @@ impl Names {
             (End::Step(_), End::Step(_)) => None,
         };
         let span = transition.and_then(|t| self.spans.get(t as usize)).copied().unwrap_or_default();
-        let part = Part::Connector { connector: index, from: c.from, to: c.to, leaving: c.leaving };
+        let part =
+            Part::Connector { connector: index, from: c.from, to: c.to, leaving: c.leaving, form: c.form };
         item(part, picture, span)
     }
 }

@@ -3,7 +3,7 @@
 //! The page selects the items in view by their boxes and shows the SVG of their strokes, so it needs no
 //! knowledge of symbols. `svg` prints all items.
 
-use g7_model::Span;
+use g7_model::{LinkForm, Span};
 
 use crate::{Bends, End, Picture, Point, Rect};
 
@@ -43,7 +43,7 @@ impl Drawing {
 impl Item {
     /// The item, shifted by a vector.
     #[must_use]
-    pub(crate) fn moved(self, by: Point) -> Item {
+    pub fn moved(self, by: Point) -> Item {
         let part = match self.part {
             Part::Step { step, square } => Part::Step { step, square: shifted(square, by) },
             Part::Transition { transition, bar, text } => {
@@ -101,6 +101,8 @@ pub enum Part {
         held: Option<[usize; 2]>,
         /// The bends that the layout section gives it.
         bends: Bends,
+        /// The form that the layout section gives it.
+        form: Option<LinkForm>,
     },
     /// One end of a link that is not drawn in full, with the name of its other end.
     Connector {
@@ -112,6 +114,8 @@ pub enum Part {
         to: End,
         /// True at the start of the link, false at its end.
         leaving: bool,
+        /// The form that the layout section gives the link.
+        form: Option<LinkForm>,
     },
     /// A comment from the layout section.
     Comment {

@@ -239,6 +239,7 @@ fn what_lies_over_something_is_found() {
             to: End::Transition(0),
             held: None,
             bends: Bends::None,
+            form: None,
         },
         picture,
         area: through,

@@ -107,7 +107,7 @@ impl Picture {
     }
 
     /// The bounding box; `None` if nothing is drawn.
-    pub(crate) fn area(&self) -> Option<Rect> {
+    pub fn area(&self) -> Option<Rect> {
         self.ink.iter().map(Ink::area).reduce(|a, b| a.union(&b))
     }
 

@@ -31,9 +31,10 @@ mod rungs;
 mod svg;
 mod symbols;
 mod text;
+mod together;
 
 pub use chronogram::{Chronogram, Edge, Lane, LaneKind, chronogram_picture, chronogram_svg};
-pub use draw::{comments, draw, draw_all, measure, placed};
+pub use draw::{ActionForms, action_forms, comments, draw, draw_all, measure, placed};
 pub use drawing::{Drawing, Item, Part};
 pub use drawio::{drawio, shapes};
 pub use geometry::{Extent, Point, Rect, U};
@@ -46,3 +47,4 @@ pub use room::make_room;
 pub use rungs::{Element, Rung, rungs, rungs_svg};
 pub use svg::{sheet, style, svg};
 pub use text::{FONT_FAMILY, font, width};
+pub use together::{Arranged, opened, together};

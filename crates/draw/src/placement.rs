@@ -1,6 +1,8 @@
 //! Where the symbols of a chart stand and how its links run: the result of the layout. Nothing here
 //! depends on how a symbol looks.
 
+use g7_model::LinkForm;
+
 use crate::{Extent, Point, Rect};
 
 /// The room that each symbol needs, in the order of the text of the chart.
@@ -40,12 +42,14 @@ pub struct Link {
     pub held: Option<[usize; 2]>,
     /// The bends that the layout section gives it.
     pub bends: Bends,
+    /// The form that the layout section gives it.
+    pub form: Option<LinkForm>,
 }
 
 impl Link {
     /// A link whose way is that of the layout.
     pub(crate) fn new(from: End, to: End, points: Vec<Point>, arrows: Vec<(Point, (i8, i8))>) -> Link {
-        Link { from, to, points, arrows, held: None, bends: Bends::None }
+        Link { from, to, points, arrows, held: None, bends: Bends::None, form: None }
     }
 }
 
@@ -90,6 +94,8 @@ pub struct Connector {
     pub points: Vec<Point>,
     /// The box of its text, to the right of the arrow.
     pub text: Rect,
+    /// The form that the layout section gives the link.
+    pub form: Option<LinkForm>,
 }
 
 /// A laid-out chart.

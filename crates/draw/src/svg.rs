@@ -1,25 +1,17 @@
 //! Drawings as standalone files: a style sheet, the font, and the items of one or several charts on
 //! one sheet.
 
-use std::collections::HashMap;
 use std::fmt::Write as _;
 
-use g7_model::{ActionKind, Chart, ChartKind, Document, Order, StepKind};
+use g7_model::Document;
 
-use crate::ink::{Picture, Px, escape};
-use crate::text::{FONT_FAMILY, clean, font, shortened, width};
-use crate::{Drawing, Options, Part, Point, Rect};
+use crate::ink::{Px, escape};
+use crate::text::{FONT_FAMILY, font};
+use crate::together::{Arranged, together};
+use crate::{Drawing, Options, Part, Rect};
 
 /// Margin round a standalone picture.
 const MARGIN: i32 = 200;
-/// Distance between two charts on a sheet.
-const BETWEEN: i32 = 600;
-/// Text size of the name over a chart.
-const TITLE: i32 = 180;
-/// Text size of the comment beside the name.
-const SUBTITLE: i32 = 130;
-/// Distance from the title to the chart.
-const UNDER_TITLE: i32 = 180;
 
 /// The style sheet for the fragments: one rule for each class.
 pub fn style(dark: bool) -> String {
@@ -61,139 +53,21 @@ pub fn svg(drawing: &Drawing, options: &Options) -> String {
     out
 }
 
-/// Draws several charts as one SVG file: in rows, each under its name.
+/// Draws several charts as one SVG file, each under its title: where their layout sections say, the others in rows.
 pub fn sheet(document: &Document, drawings: &[Drawing], options: &Options) -> String {
-    let nesting = Nesting::of(document);
-    let titles: Vec<Picture> = drawings.iter().map(|d| title(&nesting, d)).collect();
-    let boxes: Vec<Rect> = drawings.iter().zip(&titles).map(|(d, t)| with_title(d, t)).collect();
-    let places = rows(&boxes);
-    let area = boxes.iter().zip(&places).fold(None, |all: Option<Rect>, (b, p)| {
-        let here = Rect { x: p.x, y: p.y, ..*b };
-        Some(all.map_or(here, |all| all.union(&here)))
-    });
+    let arranged = together(document, drawings);
+    let area = arranged.iter().map(|a| a.area).reduce(|all, area| all.union(&area));
     let names: Vec<&str> = drawings.iter().map(|d| &*d.chart).collect();
     let mut out = String::new();
     open(&mut out, area.unwrap_or_default(), options, &names.join(", "));
-    for (((d, t), b), p) in drawings.iter().zip(&titles).zip(&boxes).zip(&places) {
-        let _ = write!(out, "<g transform=\"translate({} {})\">", Px(p.x - b.x), Px(p.y - b.y));
-        out.push_str(&t.svg());
+    for (d, Arranged { by, title, frame, .. }) in drawings.iter().zip(&arranged) {
+        let _ = write!(out, "<g>{}{}</g>", title.svg(), frame.svg());
+        let _ = write!(out, "<g transform=\"translate({} {})\">", Px(by.x), Px(by.y));
         body(&mut out, d);
         out.push_str("</g>");
     }
     out.push_str("</g></svg>\n");
     out
-}
-
-/// The title over a chart: its name, the macro-step or enclosing step it belongs to, and its
-/// comment. An enclosed chart also gets a frame with the name of its enclosing step.
-fn title(nesting: &Nesting<'_>, drawing: &Drawing) -> Picture {
-    let mut p = Picture::default();
-    let name = &*drawing.chart;
-    let Some(chart) = nesting.charts.get(name) else { return p };
-    let name = match (chart.kind, nesting.macro_steps.get(name)) {
-        (ChartKind::Expansion, Some(step)) if *step != name => {
-            format!("{} = {}", short(step), short(name))
-        }
-        (ChartKind::Chart | ChartKind::Expansion | ChartKind::Task, _) => short(&chart.name.text),
-    } + &parameters(chart);
-    let (mut x, y) = (drawing.area.x, drawing.area.y - UNDER_TITLE);
-    if let Some(step) = nesting.enclosing.get(&*drawing.chart) {
-        let (step, _) = shortened(&clean(step), SUBTITLE, 2000);
-        x += enclosing_mark(&mut p, x, y, &step) + 100;
-    }
-    let enclosed = !p.ink.is_empty();
-    p.text("g7-title", x, y, TITLE, &name);
-    if let Some(comment) = &chart.comment {
-        let (comment, _) = shortened(&clean(comment), SUBTITLE, 6000);
-        p.text("g7-note", x + width(&name, TITLE) + 120, y, SUBTITLE, &comment);
-    }
-    if enclosed {
-        let all = p.area().unwrap_or_default().union(&drawing.area);
-        p.rect("g7-frame", all.x - 150, all.y - 120, all.w + 300, all.h + 270);
-    }
-    p
-}
-
-/// `(i, speed)`, the names of the parameters; ` of Gripper`, the function block of the chart.
-fn parameters(chart: &Chart) -> String {
-    if let Some(block) = &chart.block {
-        return format!(" of {}", short(&block.text));
-    }
-    let names: Vec<&str> = chart.params.iter().map(|p| &*p.name.text).collect();
-    if names.is_empty() { String::new() } else { short(&format!("({})", names.join(", "))) }
-}
-
-fn short(name: &str) -> String {
-    shortened(&clean(name), TITLE, 4000).0
-}
-
-/// Draws a small symbol of an enclosing step with its name; returns its width.
-fn enclosing_mark(p: &mut Picture, x: i32, y: i32, step: &str) -> i32 {
-    let (h, c) = (260, 60);
-    let w = (width(step, SUBTITLE) + 120).max(h);
-    let top = y - TITLE * 35 / 100 - h / 2;
-    let (right, low) = (x + w, top + h);
-    p.rect("g7-box", x, top, w, h);
-    p.line("g7-inner", &[(x, top + c), (x + c, top)]);
-    p.line("g7-inner", &[(right - c, top), (right, top + c)]);
-    p.line("g7-inner", &[(right, low - c), (right - c, low)]);
-    p.line("g7-inner", &[(x + c, low), (x, low - c)]);
-    p.text("g7-name", x + (w - width(step, SUBTITLE)) / 2, top + h / 2 + SUBTITLE * 35 / 100, SUBTITLE, step);
-    w
-}
-
-/// The charts of a document by name, and the step that each belongs to. Of several with one name
-/// the first in the text counts.
-#[derive(Default)]
-struct Nesting<'a> {
-    charts: HashMap<&'a str, &'a Chart>,
-    /// By the name of an expansion: its macro-step.
-    macro_steps: HashMap<&'a str, &'a str>,
-    /// By the name of an enclosed chart: its enclosing step.
-    enclosing: HashMap<&'a str, &'a str>,
-}
-
-impl<'a> Nesting<'a> {
-    fn of(document: &'a Document) -> Nesting<'a> {
-        let mut all = Nesting::default();
-        for chart in document.charts() {
-            all.charts.entry(&chart.name.text).or_insert(chart);
-        }
-        for step in document.charts().flat_map(Chart::steps) {
-            if let StepKind::Macro(expansion) = &step.kind {
-                all.macro_steps.entry(&expansion.text).or_insert(&step.name.text);
-            }
-            for action in &step.actions {
-                if let ActionKind::Order(Order::Enclose(chart)) = &action.kind {
-                    all.enclosing.entry(&chart.text).or_insert(&step.name.text);
-                }
-            }
-        }
-        all
-    }
-}
-
-fn with_title(drawing: &Drawing, title: &Picture) -> Rect {
-    title.area().map_or(drawing.area, |t| t.union(&drawing.area))
-}
-
-/// Places boxes in rows without changing their order. A row is no wider than the widest box or than
-/// a sheet that is somewhat wider than high.
-fn rows(boxes: &[Rect]) -> Vec<Point> {
-    let ink: i64 = boxes.iter().map(|b| i64::from(b.w + BETWEEN) * i64::from(b.h + BETWEEN)).sum();
-    let widest = boxes.iter().map(|b| b.w).max().unwrap_or(0);
-    let room = widest.max(i32::try_from((ink * 3 / 2).isqrt()).unwrap_or(i32::MAX));
-    let (mut x, mut y, mut high) = (0, 0, 0);
-    let mut places = Vec::new();
-    for b in boxes {
-        if x > 0 && x + b.w > room {
-            (x, y, high) = (0, y + high + BETWEEN, 0);
-        }
-        places.push(Point { x, y });
-        x += b.w + BETWEEN;
-        high = high.max(b.h);
-    }
-    places
 }
 
 /// Wraps other SVG content as a file in the same style.
@@ -285,16 +159,5 @@ mod tests {
         for (plain, coded) in cases {
             assert_eq!(base64(plain.as_bytes()), coded);
         }
-    }
-
-    #[test]
-    fn charts_on_a_sheet_keep_their_order_and_their_distance() {
-        let boxes = [(900, 2000), (800, 500), (4000, 700), (10, 10)].map(|(w, h)| Rect { x: 5, y: 5, w, h });
-        let places = rows(&boxes);
-        let put: Vec<Rect> = boxes.iter().zip(&places).map(|(b, p)| Rect { x: p.x, y: p.y, ..*b }).collect();
-        for (i, a) in put.iter().enumerate() {
-            assert!(put[i + 1..].iter().all(|b| !a.overlaps(b)), "{put:?}");
-        }
-        assert!(places.windows(2).all(|w| (w[0].y, w[0].x) < (w[1].y, w[1].x)), "{places:?}");
     }
 }

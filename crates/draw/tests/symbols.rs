@@ -340,3 +340,67 @@ fn receptivities_side_by_side_are_set_narrower_than_one_alone() {
     let (one, two, three) = (widths(1), widths(2), widths(3));
     assert!(three < two && two < one, "{one} {two} {three}");
 }
+
+/// The actions of a step of this text, by their boxes and pictures.
+fn side_by_side(actions: &str, layout: &str, look: Look) -> (Drawing, Vec<Item>) {
+    let options = Options { look, ..Options::default() };
+    let text = format!("chart G {{ initial step 2 {{ {actions} }} }} layout G {{ {layout} }}");
+    let d = picture(&text, &options);
+    let mut found: Vec<Item> = items(&d, |p| matches!(p, Part::Action { .. })).into_iter().cloned().collect();
+    found.sort_by_key(|i| if let Part::Action { index, .. } = i.part { index } else { 0 });
+    (d, found)
+}
+
+#[test]
+fn actions_in_a_row_touch_each_other_and_have_one_height() {
+    let actions = "N a; N b if c_long_condition and another_one; on ↑e: { x := 1 }";
+    for look in [Look::Iec60848, Look::Sfc] {
+        let (_, row) = side_by_side(actions, "actions in row", look);
+        assert_eq!(row.len(), 3);
+        for pair in row.windows(2) {
+            let rect = |i: &Item| frame(i);
+            let ([ax, ay, aw, ah], [bx, by, _, bh]) = (rect(&pair[0]), rect(&pair[1]));
+            assert!((ax + aw - bx).abs() < 0.01, "the rectangles touch");
+            assert_eq!((ay, ah), (by, bh), "they have one height");
+            // A condition stands over its own rectangle, so the pictures do not overlap.
+            let (a, b) = (pair[0].area, pair[1].area);
+            assert!(a.x + a.w <= b.x + 1, "{a:?} {b:?}");
+        }
+        // One line joins them to the step: that of the first action.
+        let edge = 25.0;
+        assert!(frame(&row[0])[0] > edge && row[0].area.x <= 250, "{:?}", row[0].area);
+        let (_, column) = side_by_side(actions, "", look);
+        assert!(column.windows(2).all(|p| frame(&p[0])[1] < frame(&p[1])[1]), "a column goes down");
+    }
+}
+
+#[test]
+fn a_step_has_a_form_of_its_own() {
+    let below = |layout: &str| {
+        let (_, found) = side_by_side("N a; N b", layout, Look::Iec60848);
+        frame(&found[1])[1] > frame(&found[0])[1]
+    };
+    assert!(below(""));
+    assert!(below("actions in column"));
+    assert!(!below("actions in row"));
+    assert!(!below("actions of step 2 in row"));
+    assert!(below("actions in row actions of step 2 in column"));
+    assert!(below("actions of step 9 in row"));
+}
+
+#[test]
+fn comments_among_actions_stand_behind_the_row() {
+    let (_, found) = side_by_side("\"first of all\"; N a; N b", "actions in row", Look::Iec60848);
+    let right = found[1..].iter().map(|i| i.area.x + i.area.w).max().expect("actions");
+    assert!(found[0].area.x >= right, "{:?}", found[0].area);
+}
+
+/// Left edge, upper edge, width and height of the rectangle of an action, in px.
+fn frame(item: &Item) -> [f64; 4] {
+    let svg = item.picture.svg();
+    let tag = svg.split('<').find(|t| t.starts_with("rect") && t.contains("g7-action")).expect("a rectangle");
+    ["x", "y", "width", "height"].map(|name| {
+        let value = tag.split(&format!(" {name}=\"")).nth(1).expect(name);
+        value.split('"').next().expect(name).parse().expect("a number")
+    })
+}

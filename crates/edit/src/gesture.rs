@@ -1,5 +1,7 @@
 //! The gestures of the user, as the page sends them (JSON with the tag `g`).
 
+use g7_model::{ActionForm, LinkForm};
+
 use crate::id::ItemId;
 use crate::splice::Splice;
 
@@ -201,6 +203,31 @@ pub enum Gesture {
         /// from its start. Without any the link goes the way of the layout again.
         points: Vec<[f64; 2]>,
     },
+    /// Chooses the form in which a link is drawn.
+    LinkForm {
+        /// The link, or one end of a broken one.
+        link: ItemId,
+        /// The form; the layout decides if absent.
+        #[serde(default)]
+        form: Option<DrawnAs>,
+    },
+    /// Chooses how the actions of a step stand, or those of all steps of a chart that have no choice of their own.
+    ActionForm {
+        /// The step, one of its actions, or the chart.
+        id: ItemId,
+        /// The form; if absent, a step follows its chart and a chart has them one below the other.
+        #[serde(default)]
+        form: Option<StackedAs>,
+    },
+    /// Gives a chart its place on the sheet with the other charts of the file.
+    Sheet {
+        /// The chart; every chart of the file if absent, which then gets no place.
+        #[serde(default)]
+        chart: Option<String>,
+        /// The place of the origin of its drawing, in pixels; without one it stands in the rows of the sheet.
+        #[serde(default)]
+        at: Option<[f64; 2]>,
+    },
     /// Returns to the automatic layout.
     Tidy {
         /// The chart.
@@ -341,6 +368,66 @@ pub enum LinkEnd {
     From,
     /// The symbol to which it leads.
     To,
+}
+
+/// The forms in which a link can be drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LinkForm"))]
+#[serde(rename_all = "snake_case")]
+pub enum DrawnAs {
+    /// A line from its start to its end.
+    Line,
+    /// Broken off, with the name of the other end at each.
+    Jump,
+}
+
+impl DrawnAs {
+    /// The form of a layout section.
+    pub fn form(self) -> LinkForm {
+        match self {
+            DrawnAs::Line => LinkForm::Line,
+            DrawnAs::Jump => LinkForm::Jump,
+        }
+    }
+}
+
+impl From<LinkForm> for DrawnAs {
+    fn from(form: LinkForm) -> DrawnAs {
+        match form {
+            LinkForm::Line => DrawnAs::Line,
+            LinkForm::Jump => DrawnAs::Jump,
+        }
+    }
+}
+
+/// How the actions of a step can stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Deserialize, serde::Serialize)]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "ActionsForm"))]
+#[serde(rename_all = "snake_case")]
+pub enum StackedAs {
+    /// One below the other.
+    Column,
+    /// Side by side.
+    Row,
+}
+
+impl StackedAs {
+    /// The form of a layout section.
+    pub fn form(self) -> ActionForm {
+        match self {
+            StackedAs::Column => ActionForm::Column,
+            StackedAs::Row => ActionForm::Row,
+        }
+    }
+}
+
+impl From<ActionForm> for StackedAs {
+    fn from(form: ActionForm) -> StackedAs {
+        match form {
+            ActionForm::Column => StackedAs::Column,
+            ActionForm::Row => StackedAs::Row,
+        }
+    }
 }
 
 /// Kinds of branching.

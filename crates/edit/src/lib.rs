@@ -34,7 +34,9 @@ mod splice;
 pub use change::{Anchors, Edit, Refusal, Source};
 pub use copy::{copy, copy_placed};
 use g7_model::say;
-pub use gesture::{Alignment, Bound, Branching, ChartSort, Gesture, LinkEnd, Row, Sort, What};
+pub use gesture::{
+    Alignment, Bound, Branching, ChartSort, DrawnAs, Gesture, LinkEnd, Row, Sort, StackedAs, What,
+};
 pub use gestures::{Joined, Renaming};
 pub use heads::{Head, meant};
 pub use history::History;

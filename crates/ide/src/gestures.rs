@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use g7_draw::{Bends, Options};
 use g7_edit::{Edit, Gesture, ItemId, Joined, Part, spliced};
-use g7_model::{Document, Said, Span, say};
+use g7_model::{Document, LinkForm, Said, Span, say};
 use g7_rig::Source;
 
 use crate::file::{File, OWN};
@@ -18,31 +18,43 @@ pub fn draft(file: &File, gesture: &Gesture) -> Result<Edit, Said> {
     let stand = standing(&file.source.document);
     let edit = g7_edit::apply_placed(&file.as_edited(), gesture, &stand)?;
     match gesture {
-        Gesture::Bend { link, points } if !points.is_empty() => fits(file, &edit, link)?,
+        Gesture::Bend { link, points } if !points.is_empty() => {
+            let drawn = drawn(file, &edit, link)?;
+            if drawn != Some(Bends::Followed) {
+                return Err(say!("the link has no room there"));
+            }
+        }
+        Gesture::LinkForm { link, form: Some(form) } => {
+            let drawn = drawn(file, &edit, link)?.map_or(LinkForm::Jump, |_| LinkForm::Line);
+            if drawn != form.form() {
+                return Err(say!("no way is free for this link as a line"));
+            }
+        }
         _ => {}
     }
     Ok(edit)
 }
 
-/// Refuses bends that the drawing would not follow.
-fn fits(file: &File, edit: &Edit, link: &ItemId) -> Result<(), Said> {
+/// How a link takes its bends as it is drawn after an edit; `None` if it is broken off.
+fn drawn(file: &File, edit: &Edit, link: &ItemId) -> Result<Option<Bends>, Said> {
+    let source;
     let document = match &edit.read {
         Some(read) => &read.document,
-        None => &after(file, edit)?.document,
+        None => {
+            source = after(file, edit)?;
+            &source.document
+        }
     };
-    let chart = document.charts().find(|c| *c.name.text == *link.chart);
-    let followed = chart.is_some_and(|chart| {
-        let end = |end: g7_draw::End| match end {
-            g7_draw::End::Step(n) => {
-                g7_edit::End::Step(chart.steps().nth(n as usize).map_or("", |s| &s.name.text).to_owned())
-            }
-            g7_draw::End::Transition(n) => g7_edit::End::Transition(n as usize),
-        };
-        let links = g7_draw::placed(document, chart, &Options::default()).links;
-        let found = links.into_iter().find(|l| Part::Link(end(l.from), end(l.to)) == link.part);
-        found.is_some_and(|l| l.bends == Bends::Followed)
-    });
-    if followed { Ok(()) } else { Err(say!("the link has no room there")) }
+    let (Part::Link(from, to) | Part::Connector(from, to, _)) = &link.part else { return Ok(None) };
+    let Some(chart) = document.charts().find(|c| *c.name.text == *link.chart) else { return Ok(None) };
+    let end = |end: g7_draw::End| match end {
+        g7_draw::End::Step(n) => {
+            g7_edit::End::Step(chart.steps().nth(n as usize).map_or("", |s| &s.name.text).to_owned())
+        }
+        g7_draw::End::Transition(n) => g7_edit::End::Transition(n as usize),
+    };
+    let links = g7_draw::placed(document, chart, &Options::default()).links;
+    Ok(links.into_iter().find(|l| (end(l.from), end(l.to)) == (from.clone(), to.clone())).map(|l| l.bends))
 }
 
 /// The steps that a deletion would join if it heals.

@@ -68,7 +68,7 @@ pub use fix::{Fix, TextEdit};
 pub use functions::{FunctionRow, StandardFunction};
 pub use g7_say::say;
 pub use language::Language;
-pub use layout::{Layout, PlaceAt, Placed};
+pub use layout::{ActionForm, Layout, LinkForm, PlaceAt, Placed};
 pub use limits::Limits;
 pub use moments::Moment;
 pub use name::{Index, Name, bare, chart_in, instance_of, normal_address, slot_of, with_slot};

@@ -4,13 +4,13 @@
 //! type is taken apart field by field, so that a new field does not compile before it is listed here.
 
 use crate::{
-    Action, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm, Chart,
-    ChartItem, ChartKind, Composed, Document, Drive, Expr, ExprKind, Fix, Function, Instance, InstanceNames,
-    Item, Layout, Limits, Literal, Local, Moment, Name, NamedAction, Nanos, Note, Order, Param, Parts, Path,
-    Place, PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property, PropertyKind, Qualifier, Rate,
-    Said, Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt, StmtKind, Switch, Target,
-    TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use, ValueType, VarDecl, VarKind,
-    View, Work,
+    Action, ActionForm, ActionKind, Arg, Array, Arrivals, BinaryOp, Binding, Block, Body, BodyLang, CaseArm,
+    Chart, ChartItem, ChartKind, Composed, Document, Drive, Expr, ExprKind, Fix, Function, Instance,
+    InstanceNames, Item, Layout, Limits, LinkForm, Literal, Local, Moment, Name, NamedAction, Nanos, Note,
+    Order, Param, Parts, Path, Place, PlaceAt, Placed, Plant, PlantItem, Profile, ProfileName, Property,
+    PropertyKind, Qualifier, Rate, Said, Scenario, Section, Situation, Span, StateVar, Step, StepKind, Stmt,
+    StmtKind, Switch, Target, TargetPlc, TestStmt, TestStmtKind, TextEdit, Transition, Type, UnaryOp, Use,
+    ValueType, VarDecl, VarKind, View, Work,
 };
 
 /// A part of a document that has places in a text.
@@ -102,7 +102,7 @@ macro_rules! enums {
 }
 
 placeless! {
-    bool, i32, i128, u32, u64, Box<str>, String, Said, BinaryOp, BodyLang, ChartKind, Moment, Nanos, ProfileName, Qualifier,
+    ActionForm, bool, i32, i128, u32, u64, Box<str>, String, Said, BinaryOp, BodyLang, ChartKind, LinkForm, Moment, Nanos, ProfileName, Qualifier,
     Switch, TargetPlc, Type, UnaryOp, VarKind,
 }
 
@@ -181,7 +181,7 @@ enums! {
     Limits { Range(least, most), Values(values), Of(name) }
     Literal { Bool(value), Int(value, ty), Real(text, ty), Time(time), Moment(moment, time), Str(text) }
     Order { Force(name, situation), Enable(name), Mask(name), Call(name), Enclose(name) }
-    Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text), Link(ends) }
+    Placed { Step(name), Transition(name), TransitionNumber(number), Comment(text), Link(ends), LinkForm(ends, form), Actions(step, form), Sheet }
     PlantItem {
         Const { names, ty, value, comment, at },
         State(part), Rate(part), Drive(part), On(event, block, at), Each(block, at), Parts(part),

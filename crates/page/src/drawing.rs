@@ -2,8 +2,8 @@
 
 use std::collections::HashMap;
 
-use g7_draw::{Bends, End, Look, Options, Picture, Point, Rect};
-use g7_edit::{ChartSort, ItemId, Sort};
+use g7_draw::{ActionForms, Bends, End, Look, Options, Picture, Point, Rect};
+use g7_edit::{ChartSort, DrawnAs, ItemId, Sort, StackedAs};
 use g7_ide::ids;
 use g7_ide::{File, Positions, Readable};
 use g7_model::{ActionKind, Chart, ChartKind, Document, Order, Said, Step, StepKind, Transition, say};
@@ -39,23 +39,41 @@ pub(crate) struct Wish {
     pages: Option<Pages>,
     #[serde(default)]
     actions: Option<bool>,
+    /// The steps whose expansions and enclosed charts are drawn beside the chart, by their ids.
+    #[serde(default)]
+    #[cfg_attr(feature = "types", ts(as = "Option<_>", optional))]
+    pub(crate) open: Vec<String>,
     /// The number of the drawing that the page has, 0 if none; absent if this one is not to be kept.
     #[serde(default)]
     pub(crate) since: Option<u64>,
 }
 
 impl Wish {
+    /// How the chart is to be drawn.
+    pub(crate) fn options(&self) -> Options {
+        Options {
+            look: match self.look {
+                None | Some(Standard::Iec60848) => Look::Iec60848,
+                Some(Standard::Sfc) => Look::Sfc,
+            },
+            actions: self.actions.unwrap_or(true),
+            pages: self.pages == Some(Pages::Pl7),
+            ..Options::default()
+        }
+    }
+
     /// The name under which the drawing is kept; the file stands first, on a line of its own.
     pub(crate) fn key(&self) -> String {
         let file = self.file.replace('\n', " ");
-        format!("{file}\n{}\n{:?}\n{:?}\n{:?}", self.chart, self.look, self.pages, self.actions)
+        let Wish { chart, look, pages, actions, open, .. } = self;
+        format!("{file}\n{chart}\n{look:?}\n{pages:?}\n{actions:?}\n{open:?}")
     }
 }
 
 /// A rectangle, sent as its left and upper edge, width, height.
 #[derive(Clone, Copy, Debug, Default)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Box", as = "[f64; 4]"))]
-pub(crate) struct Area(Rect);
+pub(crate) struct Area(pub(crate) Rect);
 
 impl Serialize for Area {
     fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
@@ -86,6 +104,8 @@ pub(crate) enum Part {
     Link,
     Connector,
     Comment,
+    /// The name of a chart on a sheet with several; its anchor is the place of the origin of the chart.
+    Title,
     /// It is only drawn.
     #[default]
     Text,
@@ -95,11 +115,13 @@ pub(crate) enum Part {
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 pub(crate) struct Drawn {
-    chart: String,
-    kind: ChartSort,
+    pub(crate) chart: String,
+    pub(crate) kind: ChartSort,
     /// True if the drawing shows an earlier text, because the present one has syntax errors.
-    stale: bool,
-    area: Area,
+    pub(crate) stale: bool,
+    pub(crate) area: Area,
+    /// How the actions of steps without a choice of their own stand.
+    pub(crate) actions: StackedAs,
     #[serde(skip)]
     pub(crate) items: Vec<Item>,
 }
@@ -109,8 +131,8 @@ pub(crate) struct Drawn {
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "Shape", optional_fields))]
 pub(crate) struct Item {
     pub(crate) id: String,
-    part: Part,
-    area: Area,
+    pub(crate) part: Part,
+    pub(crate) area: Area,
     #[serde(skip)]
     pub(crate) picture: Picture,
     pub(crate) from: usize,
@@ -123,13 +145,13 @@ pub(crate) struct Item {
     text: Option<Area>,
     /// The anchor: the middle of the upper edge of a step, the middle of the bar of a transition.
     #[serde(skip_serializing_if = "Option::is_none")]
-    at: Option<Spot>,
+    pub(crate) at: Option<Spot>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    name: Option<String>,
+    pub(crate) name: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     label: Option<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    comment: Option<String>,
+    pub(crate) comment: Option<String>,
     /// The receptivity or the action as typed.
     #[serde(skip_serializing_if = "Option::is_none")]
     source: Option<String>,
@@ -156,9 +178,21 @@ pub(crate) struct Item {
     /// The bends that the text gives a link: true if it follows them, false if they do not fit at present.
     #[serde(skip_serializing_if = "Option::is_none")]
     bent: Option<bool>,
+    /// The form that the text gives a link, whatever the drawing could do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    form: Option<DrawnAs>,
+    /// How the actions of a step stand, where it has a choice of its own.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    stacked: Option<StackedAs>,
 }
 
 impl Item {
+    /// A symbol with no more than its picture and its place in the text.
+    pub(crate) fn plain(id: &ItemId, part: Part, picture: Picture, (from, to): (usize, usize)) -> Item {
+        let area = Area(picture.area().unwrap_or_default());
+        Item { id: id.to_string(), part, area, picture, from, to, ..Item::default() }
+    }
+
     /// How far this symbol is moved from another one that is the same but for its number and its places in the
     /// text; `None` if it is another.
     #[inline(never)]
@@ -166,12 +200,12 @@ impl Item {
         // `picture` is compared last, because it is long.
         let Item { id: _, part, area: _, picture, from: _, to: _, square, bar, text, at, .. } = self;
         let Item { name, label, comment, source, priority, steps, .. } = self;
-        let Item { step, expansion, encloses, initial, ends, held, bent, .. } = self;
+        let Item { step, expansion, encloses, initial, ends, held, bent, form, stacked, .. } = self;
         let same = (part, name, label, comment) == (&old.part, &old.name, &old.label, &old.comment)
             && (source, priority, steps) == (&old.source, &old.priority, &old.steps)
             && (step, expansion, encloses, initial)
                 == (&old.step, &old.expansion, &old.encloses, &old.initial)
-            && (held, bent) == (&old.held, &old.bent)
+            && (held, bent, form, stacked) == (&old.held, &old.bent, &old.form, &old.stacked)
             && same_ends(ends.as_ref(), old.ends.as_ref());
         let by = if same { picture.moved_from(&old.picture) } else { None }?;
         let boxes = [(*square, old.square), (*bar, old.bar), (*text, old.text)];
@@ -216,7 +250,7 @@ pub(crate) fn drawing(file: &File, wish: &Wish) -> Result<Drawn, Said> {
 }
 
 fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
-    let options = options(wish);
+    let options = wish.options();
     let find = |c: &&Chart| *c.name.text == *wish.chart;
     let chart = readable
         .document
@@ -230,20 +264,9 @@ fn drawn(readable: Readable<'_>, wish: &Wish) -> Result<Drawn, Said> {
         kind: sort(chart.kind),
         stale: readable.stale,
         area: Area(drawing.area),
+        actions: names.forms.usual.into(),
         items: unique(drawing.items.into_iter().enumerate().map(|(n, i)| names.item(n, i)).collect()),
     })
-}
-
-fn options(wish: &Wish) -> Options {
-    Options {
-        look: match wish.look {
-            None | Some(Standard::Iec60848) => Look::Iec60848,
-            Some(Standard::Sfc) => Look::Sfc,
-        },
-        actions: wish.actions.unwrap_or(true),
-        pages: wish.pages == Some(Pages::Pl7),
-        ..Options::default()
-    }
 }
 
 /// The charts that a step opens: its expansion, or the charts that it encloses.
@@ -256,7 +279,7 @@ pub(crate) fn opens(step: &Step) -> impl Iterator<Item = &str> {
     expansion.into_iter().chain(enclosed)
 }
 
-struct Names<'a> {
+pub(crate) struct Names<'a> {
     readable: Readable<'a>,
     chart: &'a Chart,
     steps: Vec<&'a Step>,
@@ -266,10 +289,11 @@ struct Names<'a> {
     transition_ids: Vec<String>,
     /// The comments of the layout section.
     comments: Vec<&'a str>,
+    pub(crate) forms: ActionForms<'a>,
 }
 
 impl<'a> Names<'a> {
-    fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
+    pub(crate) fn new(readable: Readable<'a>, chart: &'a Chart) -> Names<'a> {
         let name = &*chart.name.text;
         let transitions: Vec<&Transition> = chart.transitions().collect();
         Names {
@@ -279,12 +303,13 @@ impl<'a> Names<'a> {
             step_ids: chart.steps().map(|s| ids::step(name, &s.name.text)).collect(),
             transition_ids: (0..transitions.len()).map(|n| ids::transition(name, n)).collect(),
             transitions,
+            forms: g7_draw::action_forms(readable.document, chart),
             comments: g7_draw::comments(readable.document, chart).map(|(text, _)| text).collect(),
         }
     }
 
     #[inline(never)]
-    fn item(&self, number: usize, item: g7_draw::Item) -> Item {
+    pub(crate) fn item(&self, number: usize, item: g7_draw::Item) -> Item {
         let chart = &*self.chart.name.text;
         let (from, to) = self.readable.units(item.at);
         let base = Item { area: Area(item.area), picture: item.picture, from, to, ..Item::default() };
@@ -299,7 +324,7 @@ impl<'a> Names<'a> {
             g7_draw::Part::Transition { transition, bar, text } => {
                 self.transition(transition, bar, text, base)
             }
-            g7_draw::Part::Link { from, to, held, bends, .. } => {
+            g7_draw::Part::Link { from, to, held, bends, form, .. } => {
                 let id = ItemId::link(chart, self.end(from), self.end(to)).to_string();
                 let bent = match bends {
                     Bends::None => None,
@@ -307,11 +332,13 @@ impl<'a> Names<'a> {
                     Bends::Waived => Some(false),
                 };
                 let ends = Some([self.end_id(from), self.end_id(to)]);
-                Item { id, part: Part::Link, ends, held, bent, ..base }
+                let form = form.map(DrawnAs::from);
+                Item { id, part: Part::Link, ends, held, bent, form, ..base }
             }
-            g7_draw::Part::Connector { from, to, leaving, .. } => {
+            g7_draw::Part::Connector { from, to, leaving, form, .. } => {
                 let id = ItemId::connector(chart, self.end(from), self.end(to), leaving).to_string();
-                Item { id, part: Part::Connector, ends: Some([self.end_id(from), self.end_id(to)]), ..base }
+                let (ends, form) = (Some([self.end_id(from), self.end_id(to)]), form.map(DrawnAs::from));
+                Item { id, part: Part::Connector, ends, form, ..base }
             }
             g7_draw::Part::Comment { comment, place } => {
                 let id = ItemId::note(chart, comment as usize).to_string();
@@ -346,6 +373,7 @@ impl<'a> Names<'a> {
             encloses: opened.collect(),
             expansion,
             initial: step.initial,
+            stacked: self.forms.own(step).map(StackedAs::from),
             ..base
         }
     }
@@ -390,7 +418,7 @@ impl<'a> Names<'a> {
 
 /// Two steps with the same name are a problem of the chart, but they still get different ids.
 #[inline(never)]
-fn unique(mut items: Vec<Item>) -> Vec<Item> {
+pub(crate) fn unique(mut items: Vec<Item>) -> Vec<Item> {
     let mut seen: HashMap<&str, u32> = HashMap::with_capacity(items.len());
     let mut again = Vec::new();
     for (n, item) in items.iter().enumerate() {

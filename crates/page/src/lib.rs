@@ -37,6 +37,7 @@ mod prove;
 mod redrawn;
 mod request;
 mod run;
+mod sheet;
 mod testing;
 #[cfg(feature = "types")]
 pub mod types;

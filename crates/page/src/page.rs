@@ -24,7 +24,7 @@ use crate::prove::{self, Proof};
 use crate::redrawn::{Redrawn, Shown};
 use crate::request::{Answers, Request};
 use crate::run::{self, Asked, Because, Frame, Lanes, Run, Started, Swapped};
-use crate::{drawing, testing};
+use crate::{drawing, sheet, testing};
 
 /// A page: its open files and its runs.
 #[derive(Default)]
@@ -332,7 +332,7 @@ impl Answers for Page {
     }
 
     fn drawing(&mut self, wish: drawing::Wish) -> Result<Redrawn<'_>, Said> {
-        let drawn = drawing::drawing(self.file(&wish.file)?, &wish)?;
+        let drawn = sheet::drawn(self.file(&wish.file)?, &wish)?;
         Ok(self.shown.answer(&wish, drawn))
     }
 

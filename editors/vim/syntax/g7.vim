@@ -27,10 +27,10 @@ syntax keyword g7Profile iec60848 iec61131 jgrafchart pl7 unity
 syntax keyword g7Profile tsx3710 tsx3720 tsx57
 syntax match g7Profile /\<\%(parallel-actions\|ordered-actions\|keep-step-time\|zero-step-time\|no-final-scan\|simultaneous\|single-token\|multi-token\|pulse-first\|final-scan\|scan-clock\|sequential\|text-order\|time-clock\|one-pass\|stable\|bound\)\>/
 syntax match g7Function /\<\%(ABS\|ACOS\|ADD\|AND\|ASIN\|ATAN\|CONCAT\|CONCAT_DATE_TOD\|COS\|DAY_OF_WEEK\|DELETE\|DIV\|EQ\|EXP\|EXPT\|FIND\|GE\|GT\|INSERT\|LE\|LEFT\|LEN\|LIMIT\|LN\|LOG\|LT\|MAX\|MID\|MIN\|MOD\|MOVE\|MUL\|MUX\|NE\|NOT\|OR\|REPLACE\|RIGHT\|ROL\|ROR\|SEL\|SHL\|SHR\|SIN\|SQRT\|SUB\|TAN\|TRUNC\|XOR\)\>\ze\s*(/
-syntax match g7Clause /\%(\S\s\+\)\@40<=\<\%(INIT\|after\|always\|at\|between\|block\|bound\|clearing\|cold\|every\|expect\|fault\|il\|in\|inverted\|ld\|leads\|length\|max\|most\|never\|on\|reachable\|retain\|safe\|scan\|section\|seed\|st\|with\|within\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
+syntax match g7Clause /\%(\S\s\+\)\@40<=\<\%(INIT\|after\|always\|as\|at\|between\|block\|bound\|clearing\|cold\|every\|expect\|fault\|il\|in\|inverted\|ld\|leads\|length\|max\|most\|never\|on\|reachable\|retain\|safe\|scan\|section\|seed\|st\|with\|within\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
 syntax match g7Clause /\%(\%(pre\|post\|each\)\s\+\)\@20<=\%(st\|il\|ld\|scan\)\>/
 syntax match g7Qualifier /\<\%(DS\|P0\|P1\|SD\|SL\|D\|L\|N\|P\|R\|S\)\>\ze\s\+[A-Za-z0-9_`%({]/
-syntax match g7Statement /\%(\%(^\|[{};]\)\s*\)\@80<=\<\%(always\|arrivals\|assume\|call\|comment\|drive\|each\|enable\|enclose\|entry\|expect\|force\|instance\|link\|mask\|on\|parts\|post\|pre\|pulse\|rate\|release\|restart\|scan\|set\|state\|struct\|target\|test\|type\|use\|view\|wait\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
+syntax match g7Statement /\%(\%(^\|[{};]\)\s*\)\@80<=\<\%(actions\|always\|arrivals\|assume\|call\|comment\|drive\|each\|enable\|enclose\|entry\|expect\|force\|instance\|link\|mask\|on\|parts\|post\|pre\|pulse\|rate\|release\|restart\|scan\|set\|sheet\|state\|struct\|target\|test\|type\|use\|view\|wait\)\>\%(\s*\%(:=\|->\|=>\|[,.:]\)\)\@!/
 
 syntax match g7Operator /:=\|=>\|<>\|<=\|>=\|!=\|==\|\*\*\|[=<>≠≤≥+*&·!↑↓^]\|\/\%([\/*]\)\@!/
 syntax match g7Arrow /->\|→/

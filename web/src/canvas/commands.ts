@@ -2,6 +2,7 @@
 // list of shortcuts all use this table.
 import type { IconName } from '../lib/Icon.svelte';
 import { t, type Key } from '../lib/i18n';
+import { SHEET } from '../lib/ids';
 import { runs } from '../lib/runs.svelte';
 import { shell } from '../lib/shell.svelte';
 import { why } from '../run/why.svelte';
@@ -50,8 +51,16 @@ export const commands: Command[] = [
     keys: ['Enter'],
     near: true,
     icon: 'chevron',
-    when: () => !!editor.one?.macro || !!editor.one?.encloses?.length,
-    run: () => editor.one && editor.open(editor.one),
+    when: () => !!editor.one?.macro || !!editor.one?.encloses?.length || one('title'),
+    run: () => editor.one && editor.enter(editor.one),
+  },
+  {
+    id: 'openBeside',
+    title: 'cmd.openBeside',
+    keys: ['E'],
+    when: () => step() && editor.chart !== SHEET && editor.elsewhere === null && (!!editor.one?.macro || !!editor.one?.encloses?.length),
+    checked: () => editor.isOpened(editor.one),
+    run: () => editor.one && editor.openBeside(editor.one),
   },
   {
     id: 'receptivity',
@@ -133,6 +142,23 @@ export const commands: Command[] = [
     run: () => editor.straighten(),
   },
   {
+    id: 'otherForm',
+    title: 'cmd.asJump',
+    name: () => t(one('connector') ? 'cmd.asLine' : 'cmd.asJump'),
+    keys: ['J'],
+    near: true,
+    icon: 'target',
+    when: () => one('link') || one('connector'),
+    run: () => editor.otherForm(),
+  },
+  {
+    id: 'stacked',
+    title: 'cmd.row',
+    when: () => step() && (editor.scene?.actions.get(id())?.length ?? 0) > 1,
+    checked: () => (editor.one?.stacked ?? editor.scene?.drawing.actions) === 'row',
+    run: () => editor.stackOtherwise(),
+  },
+  {
     id: 'why',
     title: 'why.symbol',
     keys: ['W'],
@@ -144,7 +170,7 @@ export const commands: Command[] = [
     id: 'nextLink',
     title: 'cmd.nextLink',
     keys: ['L'],
-    when: () => step() || transition() || one('link'),
+    when: () => step() || transition() || one('link') || one('connector'),
     run: () => editor.nextLink(),
   },
   {

@@ -2,12 +2,13 @@
 // panels beside it (palette, properties) use the same state.
 import type { OpenFile } from '../lib/files.svelte';
 import { t } from '../lib/i18n';
-import { actionOf, kindOf, leavingPart } from '../lib/ids';
+import { actionOf, kindOf, leavingPart, SHEET } from '../lib/ids';
 import { declaration, listed, type NewName } from '../lib/names';
 import { page, Refused } from '../lib/page';
-import type { Box, Edited, Gesture, Undeclared } from '../lib/protocol';
+import type { Box, Edited, Gesture, LinkForm, Undeclared } from '../lib/protocol';
 import type { Placed as Item } from '../lib/redrawn';
 import { choices, drawnFor } from '../lib/instances.svelte';
+import { opened } from '../lib/opened.svelte';
 import { shell } from '../lib/shell.svelte';
 import { Scene, type Point } from './scene';
 
@@ -113,6 +114,11 @@ class Editor {
   async apply(gesture: Gesture, refused?: (why: string) => void): Promise<Edited | undefined> {
     const { file } = this;
     if (this.#refuses()) return undefined;
+    // On a sheet of all charts nothing says to which of them a new part belongs.
+    if ('chart' in gesture && gesture.chart === SHEET) {
+      shell.say(t('sheet.open'));
+      return undefined;
+    }
     return file ? this.#draw(file, () => told(file.edit(gesture), refused)) : undefined;
   }
 
@@ -172,6 +178,8 @@ class Editor {
   edit(id: string, field?: Field, index?: number): void {
     if (this.#refuses()) return;
     const kind = kindOf(id);
+    // A title has no field; its chart is renamed in the properties.
+    if (kind === undefined) return;
     const of = actionOf(id);
     const usual: Field = kind === 't' ? 'receptivity' : kind === 'a' ? 'action' : kind === 'n' ? 'comment' : 'name';
     this.menu = null;
@@ -183,12 +191,20 @@ class Editor {
   /** Opens the field for a new comment at a place of the plane. */
   note(at: [number, number]): void {
     if (this.chart === null) return;
+    if (this.chart === SHEET) {
+      shell.say(t('sheet.open'));
+      return;
+    }
     this.menu = null;
     this.inplace = { id: this.chart, field: 'comment', at };
   }
 
   /** The effect of Enter: opens a chart if the symbol has one, otherwise edits the symbol. */
   enter(item: Item): void {
+    if (item.part === 'title') {
+      if (this.file && item.name) shell.show(this.file, item.name);
+      return;
+    }
     if (this.open(item)) return;
     if (item.part === 'step') {
       const first = this.scene?.actions.get(item.id)?.[0];
@@ -196,6 +212,19 @@ class Editor {
     } else if (item.part === 'link') void this.apply({ g: 'insert', link: item.id, what: 'step' });
     else if (item.part === 'connector') this.follow(item);
     else if (item.part !== 'text') this.edit(item.id);
+  }
+
+  /** Draws the charts that a step opens beside the chart, or takes them away again. */
+  openBeside(item: Item): void {
+    const { file, chart } = this;
+    if (!file || chart === null) return;
+    opened.toggle(file.name, chart, item.id);
+  }
+
+  /** True if the charts that a step opens are drawn beside the chart. */
+  isOpened(item: Item | null): boolean {
+    const { file, chart } = this;
+    return !!file && chart !== null && !!item && opened.of(file.name, chart).includes(item.id);
   }
 
   /** Shows the chart that a macro-step or an enclosing step opens. */
@@ -284,11 +313,38 @@ class Editor {
     if (one?.part === 'link' && one.bent !== undefined) await this.apply({ g: 'bend', link: one.id, points: [] });
   }
 
+  /** Chooses the form in which a link is drawn; without one the layout decides. */
+  drawAs(link: Item, form: LinkForm | null): Promise<Edited | undefined> {
+    return this.apply({ g: 'link_form', link: link.id, form });
+  }
+
+  /** Has the actions of the selected step stand the other way: side by side, or one below the other. */
+  async stackOtherwise(): Promise<void> {
+    const { one, scene } = this;
+    if (!one) return;
+    const now = one.stacked ?? scene?.drawing.actions;
+    await this.apply({ g: 'action_form', id: one.id, form: now === 'row' ? 'column' : 'row' });
+  }
+
+  /** Moves a chart on the sheet of all charts. */
+  async arrange(title: Item, dx: number, dy: number): Promise<void> {
+    const [x, y] = title.at ?? [0, 0];
+    if (await this.apply({ g: 'sheet', chart: title.name ?? null, at: [x + dx, y + dy] })) shell.select([title.id]);
+  }
+
+  /** Draws a link in the other form: a line as a jump, a jump as a line. */
+  async otherForm(): Promise<void> {
+    const { one } = this;
+    if (one?.part === 'link') await this.drawAs(one, 'jump');
+    else if (one?.part === 'connector') await this.drawAs(one, one.form === 'jump' ? null : 'line');
+  }
+
   /** Selects a link: the first of the selected symbol, or the next one in the chart. */
   nextLink(): void {
     const { one, scene } = this;
-    const links = scene?.items.filter((i) => i.part === 'link') ?? [];
-    const first = links.find((l) => one && one.part !== 'link' && l.ends?.includes(one.id));
+    // A link that is broken off is there once, by its start.
+    const links = scene?.items.filter((i) => i.part === 'link' || (i.part === 'connector' && i.id.endsWith('/leaving'))) ?? [];
+    const first = links.find((l) => one && !one.ends && l.ends?.includes(one.id));
     const next = first ?? links[(links.findIndex((l) => l.id === one?.id) + 1) % links.length];
     if (next) this.goTo(next.id);
   }

@@ -1,4 +1,5 @@
 // The keys of the drawing.
+import { SHEET } from '../lib/ids';
 import { shell } from '../lib/shell.svelte';
 import { commandOf } from './commands';
 import { editor } from './editor.svelte';
@@ -48,7 +49,8 @@ function go(way: 'up' | 'down' | 'left' | 'right', e: KeyboardEvent, ctrl: boole
   if (e.altKey) {
     const [dx, dy] = { up: [0, -1], down: [0, 1], left: [-1, 0], right: [1, 0] }[way] as [number, number];
     const ids = [...shell.selection];
-    if (ids.length > 0) void editor.apply({ g: 'move', ids, dx: dx * NUDGE, dy: dy * NUDGE });
+    if (editor.one?.part === 'title' && editor.chart === SHEET) void editor.arrange(editor.one, dx * NUDGE, dy * NUDGE);
+    else if (ids.length > 0) void editor.apply({ g: 'move', ids, dx: dx * NUDGE, dy: dy * NUDGE });
     return true;
   }
   if (ctrl) {

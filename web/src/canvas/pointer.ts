@@ -1,7 +1,7 @@
 // The meaning of a press on the drawing: select, move, mark an area, draw a link. The camera moves
 // the view itself.
 import type { Placed as Item } from '../lib/redrawn';
-import { actionOf } from '../lib/ids';
+import { actionOf, SHEET } from '../lib/ids';
 import type { LinkEnd } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 import { bendsOf, moved, type Segment } from './bends';
@@ -27,7 +27,7 @@ const SNAP = 5;
 
 type Doing =
   | { what: 'press'; item: Item | null; add: boolean }
-  | { what: 'move'; ids: Set<string> }
+  | { what: 'move'; ids: Set<string>; title?: Item }
   | { what: 'mark'; item: Item | null; add: boolean }
   | { what: 'link'; from: string }
   | { what: 'relink'; link: string; end: LinkEnd; part: Item['part'] }
@@ -35,6 +35,8 @@ type Doing =
 
 /** True if a symbol can be dragged; links only follow their symbols. */
 function held(item: Item | null): boolean {
+  // A chart that is opened beside another stands where its step is.
+  if (item?.part === 'title') return editor.chart === SHEET;
   return item !== null && ['step', 'transition', 'action', 'comment'].includes(item.part);
 }
 
@@ -246,6 +248,11 @@ export class Pointer {
    * true. */
   #grab(item: Item, add: boolean, alone: boolean): boolean {
     if (!this.#moves(item)) return false;
+    if (item.part === 'title') {
+      shell.select([item.id]);
+      this.#doing = { what: 'move', ids: new Set(editor.scene?.ofTitle(item.id)), title: item };
+      return true;
+    }
     const id = actionOf(item.id)?.step ?? item.id;
     if (!shell.selection.has(item.id) && !shell.selection.has(id)) {
       shell.select(add ? [...shell.selection, id] : [id]);
@@ -263,7 +270,7 @@ export class Pointer {
     clearTimeout(this.#long);
     if (!doing) return;
     if (doing.what === 'press') this.#click(doing.item, doing.add);
-    else if (doing.what === 'move') void this.#drop(doing.ids);
+    else if (doing.what === 'move') void this.#drop(doing.ids, doing.title);
     else if (doing.what === 'mark') this.#mark(doing.item);
     else if (doing.what === 'bend') void this.#bent(doing.link, doing.line);
     else if (doing.what === 'relink') this.#take(doing.link, doing.end);
@@ -294,9 +301,11 @@ export class Pointer {
     shell.select(ids);
   }
 
-  async #drop(ids: Set<string>): Promise<void> {
+  async #drop(ids: Set<string>, title?: Item): Promise<void> {
     const moving = editor.moving;
-    if (moving && (moving.dx !== 0 || moving.dy !== 0)) {
+    if (title) {
+      if (moving && (moving.dx !== 0 || moving.dy !== 0)) await editor.arrange(title, moving.dx, moving.dy);
+    } else if (moving && (moving.dx !== 0 || moving.dy !== 0)) {
       // Neighbours that only came along stay unselected.
       const selected = [...shell.selection];
       if (await editor.apply({ g: 'move', ids: [...ids], dx: moving.dx, dy: moving.dy })) shell.select(selected);
@@ -307,7 +316,9 @@ export class Pointer {
   async #bent(link: Item, was: Point[]): Promise<void> {
     const line = editor.bending;
     const isMoved = line?.some(([x, y], n) => x !== was[n]?.[0] || y !== was[n]?.[1]);
-    if (line && isMoved) await editor.apply({ g: 'bend', link: link.id, points: bendsOf(link, line) });
+    const [ox, oy] = editor.scene?.origin(link.id) ?? [0, 0];
+    const points = bendsOf(link, line ?? []).map(([x, y]): Point => [x - ox, y - oy]);
+    if (line && isMoved) await editor.apply({ g: 'bend', link: link.id, points });
     editor.bending = null;
   }
 

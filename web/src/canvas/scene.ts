@@ -1,12 +1,12 @@
 // A drawing prepared for queries: symbols by id, which symbol follows which, which lies where. It
 // knows geometry only.
-import { actionOf } from '../lib/ids';
+import { actionOf, titleOf } from '../lib/ids';
 import type { Box } from '../lib/protocol';
 import type { Drawing, Placed as Item } from '../lib/redrawn';
 
 export type Point = [x: number, y: number];
 
-const RANK: Record<Item['part'], number> = { action: 0, step: 1, transition: 2, connector: 3, comment: 3.5, link: 4, text: 5 };
+const RANK: Record<Item['part'], number> = { action: 0, step: 1, transition: 2, connector: 3, comment: 3.5, title: 3.6, link: 4, text: 5 };
 
 export class Scene {
   readonly drawing: Drawing;
@@ -58,6 +58,16 @@ export class Scene {
     const x = (id: string) => this.byId.get(id)?.at?.[0] ?? 0;
     for (const side of [joined.after, joined.before]) side.forEach((ids) => ids.length > 1 && ids.sort((a, b) => x(a) - x(b)));
     return (this.#joined = joined);
+  }
+
+  /** Where the origin of the chart of a symbol is; on a sheet of several charts each has a place. */
+  origin(id: string): Point {
+    return this.byId.get(titleOf(id))?.at ?? [0, 0];
+  }
+
+  /** All symbols of the chart with this title. */
+  ofTitle(title: string): string[] {
+    return this.items.filter((i) => titleOf(i.id) === title).map((i) => i.id);
   }
 
   /** The given symbols, and the transitions that are linked to no other steps: a drag moves them

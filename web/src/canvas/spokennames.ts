@@ -35,6 +35,8 @@ export function nameOf(item: Item): string {
       return t('canvas.action', { name: nameIn(actionOf(item.id)?.step ?? ''), text: item.source ?? '' });
     case 'connector':
       return t('canvas.connector', { name: item.name ?? nameIn(item.ends?.[1] ?? '') });
+    case 'title':
+      return with_(t('canvas.name', { name: item.name ?? '' }));
     case 'comment':
       return t('canvas.comment', { text: item.comment ?? '' });
     case 'link':

@@ -2,6 +2,7 @@
 // there while an answer is on its way are rebased on each other.
 import { ChangeSet, type Text } from '@codemirror/state';
 import { drafts } from './drafts.svelte';
+import { opened as beside } from './opened.svelte';
 import { page, Refused, type Message } from './page';
 import { prefs } from './prefs.svelte';
 import type { Edited, Gesture, Look, Problem, Shelved, Splice } from './protocol';
@@ -178,11 +179,12 @@ export class OpenFile {
   /** The drawing of a chart, for the present text. */
   drawing(chart: string): Promise<Drawing> {
     const look = prefs.look;
-    const key = `${chart}\n${look}\n${prefs.pages}`;
+    const open = [...beside.of(this.name, chart)];
+    const key = `${chart}\n${look}\n${prefs.pages}\n${open.join('\n')}`;
     const known = this.#drawings.get(key);
     if (known && known.version === this.look.version) return known.drawing;
     const redraws = known?.redraws ?? new Redraws();
-    const drawing = redraws.ask({ file: this.name, chart, look, actions: true, pages: prefs.pages ? 'pl7' : null });
+    const drawing = redraws.ask({ file: this.name, chart, look, actions: true, pages: prefs.pages ? 'pl7' : null, open });
     this.#drawings.set(key, { version: this.look.version, drawing, redraws });
     return drawing;
   }

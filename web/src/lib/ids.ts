@@ -1,6 +1,9 @@
 // Ids of symbols: `Chart/s/Step`, `Chart/a/Step/0`, `Chart/t/3`, … as the Rust crate `g7-edit`
 // writes them; the characters `/ > : %` inside a name are written %2F %3E %3A %25.
 
+/** The name under which all charts of a file stand on one sheet; no chart has it. */
+export const SHEET = '*';
+
 export type IdKind = 's' | 'a' | 't' | 'l' | 'c' | 'n' | 'x';
 
 const decode = (text: string): string => text.replace(/%(2F|3E|3A|25)/g, (code) => decodeURIComponent(code));
@@ -13,6 +16,9 @@ export function chartOf(id: string): string {
 export function kindOf(id: string): IdKind | undefined {
   return id.split('/')[1] as IdKind | undefined;
 }
+
+/** The id of the title of a symbol's chart, on a sheet of several charts. */
+export const titleOf = (id: string): string => id.split('/')[0] ?? '';
 
 /** The name of the step, or the number of the transition, in an id. */
 export function nameIn(id: string): string {

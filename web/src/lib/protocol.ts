@@ -19,6 +19,9 @@ export type ActionForm = {
   units: Array<string>;
 };
 
+/** How the actions of a step can stand. */
+export type ActionsForm = 'column' | 'row';
+
 /** A test with the change that adds it. */
 export type Added = { title: string; splices: Array<Splice> };
 
@@ -58,6 +61,10 @@ export type Alike = {
   held?: [number, number];
   /** The bends that the text gives a link: true if it follows them, false if they do not fit at present. */
   bent?: boolean;
+  /** The form that the text gives a link, whatever the drawing could do. */
+  form?: LinkForm;
+  /** How the actions of a step stand, where it has a choice of its own. */
+  stacked?: ActionsForm;
 };
 
 /** An answer: its sentences in the order in which they are read, causes behind their effects. */
@@ -507,6 +514,27 @@ export type Gesture =
     points: Array<[number, number]>;
   }
   | {
+    g: 'link_form';
+    /** The link, or one end of a broken one. */
+    link: ItemId;
+    /** The form; the layout decides if absent. */
+    form?: LinkForm | null;
+  }
+  | {
+    g: 'action_form';
+    /** The step, one of its actions, or the chart. */
+    id: ItemId;
+    /** The form; if absent, a step follows its chart and a chart has them one below the other. */
+    form?: ActionsForm | null;
+  }
+  | {
+    g: 'sheet';
+    /** The chart; every chart of the file if absent, which then gets no place. */
+    chart?: string | null;
+    /** The place of the origin of its drawing, in pixels; without one it stands in the rows of the sheet. */
+    at?: [number, number] | null;
+  }
+  | {
     g: 'tidy';
     /** The chart. */
     chart: string;
@@ -632,6 +660,10 @@ export type Item = {
   held?: [number, number];
   /** The bends that the text gives a link: true if it follows them, false if they do not fit at present. */
   bent?: boolean;
+  /** The form that the text gives a link, whatever the drawing could do. */
+  form?: LinkForm;
+  /** How the actions of a step stand, where it has a choice of its own. */
+  stacked?: ActionsForm;
 };
 
 /** The id of a part of a chart. */
@@ -670,6 +702,9 @@ export type Lanes = {
 
 /** The two ends of a link. */
 export type LinkEnd = 'from' | 'to';
+
+/** The forms in which a link can be drawn. */
+export type LinkForm = 'line' | 'jump';
 
 export type LogicForm = {
   tongue: Tongue;
@@ -757,7 +792,7 @@ export type Outcome = 'equal' | 'apart' | 'open' | 'unlike' | 'errors';
 export type Pages = 'pl7';
 
 /** The kinds of symbols. */
-export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'text';
+export type Part = 'step' | 'action' | 'transition' | 'link' | 'connector' | 'comment' | 'title' | 'text';
 
 /** A binding of a picture: an attribute of an element follows a value. */
 export type PictureBinding = {
@@ -903,6 +938,8 @@ export type Redrawn = {
   /** True if the drawing shows an earlier text, because the present one has syntax errors. */
   stale: boolean;
   area: Box;
+  /** How the actions of steps without a choice of their own stand. */
+  actions: ActionsForm;
 };
 
 export type Related = { from: number; to: number; what: string };
@@ -1194,6 +1231,8 @@ export interface Requests {
     look?: Standard | null;
     pages?: Pages | null;
     actions?: boolean | null;
+    /** The steps whose expansions and enclosed charts are drawn beside the chart, by their ids. */
+    open?: Array<string>;
     /** The number of the drawing that the page has, 0 if none; absent if this one is not to be kept. */
     since?: number | null;
   };

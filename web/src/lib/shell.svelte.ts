@@ -4,7 +4,7 @@ import { tick, type Component } from 'svelte';
 import { files, type OpenFile } from './files.svelte';
 import type { Key } from './i18n';
 import { prefs } from './prefs.svelte';
-import { chartOf } from './ids';
+import { chartOf, SHEET } from './ids';
 import { Refused } from './page';
 import type { FileRow } from './server';
 
@@ -72,6 +72,7 @@ class Shell {
     if (!file) return null;
     const chosen = this.#charts[file.name];
     const charts = file.look.charts;
+    if (chosen === SHEET && charts.length > 1) return SHEET;
     return charts.find((c) => c.name === chosen)?.name ?? charts[0]?.name ?? null;
   }
 
@@ -85,8 +86,9 @@ class Shell {
 
   /** Shows a symbol and selects it. */
   jump(file: OpenFile, id: string): void {
-    const chart = chartOf(id);
-    this.show(file, chart);
+    // A sheet of all charts has the symbol as well.
+    const everywhere = this.chart(file) === SHEET && !file.look.charts.find((c) => c.name === chartOf(id))?.file;
+    this.show(file, everywhere ? SHEET : chartOf(id));
     this.selection = new Set([id]);
     this.goto = { id, n: ++this.#count };
   }

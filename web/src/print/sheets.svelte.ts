@@ -1,6 +1,7 @@
 // The sheets of the print preview: what is printed, on which paper, and the pages that the program makes of it.
 import { files, type OpenFile } from '../lib/files.svelte';
 import { said } from '../lib/i18n';
+import { SHEET } from '../lib/ids';
 import { page } from '../lib/page';
 import { prefs } from '../lib/prefs.svelte';
 import { proofs } from '../lib/proofs.svelte';
@@ -29,7 +30,7 @@ class Sheets {
     const dossier = this.what === 'dossier';
     const wish = {
       paper: prefs.paper,
-      charts: this.what === 'chart' ? [chart] : file.look.charts.map((c) => c.name),
+      charts: this.what === 'chart' && chart !== SHEET ? [chart] : file.look.charts.map((c) => c.name),
       dossier,
       head: { title: this.title, author: prefs.author, company: prefs.company, revision: this.revision, date: this.date },
       answers: dossier ? answers() : undefined,

@@ -1,7 +1,7 @@
 // The marks of a run on the drawing, updated at most 25 times a second.
 import { live } from '../lib/live.svelte';
 import type { Item } from '../lib/protocol';
-import { kindOf, transitionNumber } from '../lib/ids';
+import { chartOf, kindOf, transitionNumber } from '../lib/ids';
 import { choices, isShown, shownOf, type Chosen } from '../lib/instances.svelte';
 import type { Run } from './state.svelte';
 import { Transitions } from './transitions';
@@ -30,6 +30,18 @@ function* wordsOf(text: string): Generator<string> {
     yield ticked ?? word + (index ?? '');
     if (index) yield* wordsOf(index.slice(1));
   }
+}
+
+/** The symbols of a drawing by the names of their charts: a sheet has several. */
+export function byChart(items: readonly Item[]): Map<string, Item[]> {
+  const found = new Map<string, Item[]>();
+  for (const item of items) {
+    const chart = chartOf(item.id);
+    const own = found.get(chart);
+    if (own) own.push(item);
+    else found.set(chart, [item]);
+  }
+  return found;
 }
 
 /** Finds the names of signals in the texts of symbols. `chart` is the name of the chart in the program: that of an
@@ -69,7 +81,6 @@ export function age(ms: number, grain = 0): string {
 
 /** The visible symbols. */
 interface Shown {
-  chart: string;
   items: readonly Item[];
   names: Named;
   same: boolean;
@@ -109,8 +120,8 @@ export class Marks {
   }
 
   /** Sets the visible symbols with the signals that they name; `same` says that their text is that of the run. */
-  show({ chart, items, names, same }: Shown, other: Run | null): void {
-    this.#transitions.show(chart, items, same);
+  show({ items, names, same }: Shown, other: Run | null): void {
+    byChart(items).forEach((own, chart) => this.#transitions.show(chart, own, same));
     this.#names = names;
     this.#actions = new Map();
     for (const id of names.keys()) {

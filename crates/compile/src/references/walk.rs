@@ -306,7 +306,7 @@ impl<'d> Walk<'_, 'd> {
                             let def = Definition::Transition { chart, label: text };
                             self.name(label, Some(def), Written::Name);
                         }
-                        Placed::TransitionNumber(_) | Placed::Comment(_) | Placed::Link(_) => {}
+                        _ => {}
                     }
                 }
             }

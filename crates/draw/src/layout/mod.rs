@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! Chart -> adrift, graph -> reduce -> tree -> shape, beside -> place -> route -> Placement
-//!                                                        \-> moved -> bends -/  (layout section)
+//!                                            \-> moved -> unbroken -> bends -/  (layout section)
 //! ```
 //!
 //! A GRAFCET nearly always consists of sequences with branches in them. The graph is therefore
@@ -24,6 +24,7 @@
 mod adrift;
 mod bends;
 mod beside;
+pub(crate) mod forms;
 mod graph;
 mod lines;
 mod lists;
@@ -36,6 +37,7 @@ mod route;
 pub(crate) mod section;
 mod shape;
 mod tree;
+mod unbroken;
 mod way;
 
 use g7_model::{Chart, PlaceAt, Step, StepKind};
@@ -50,14 +52,17 @@ const TRIES: usize = 4;
 #[inline(never)]
 pub fn layout(chart: &Chart, sizes: &Sizes, places: &[PlaceAt]) -> Placement {
     let graph = graph::Graph::new(chart);
-    let mut broken = vec![false; graph.links.len()];
+    let forms = forms::given(chart, &graph, places);
+    let mut broken = forms::jumps(&graph, &forms);
     let mut tries = 0;
     loop {
         let tree = reduce::reduce(&graph, &broken);
         let shapes = shape::shapes(&graph, &tree, sizes);
         if shapes.failed.is_empty() {
             let auto = from_first(route::route(&shapes, &place::places(&shapes)), chart);
-            let mut placement = moved::moved(&graph, sizes, auto, &moved::given(chart, &graph, places));
+            let given = moved::given(chart, &graph, places);
+            let mut placement = moved::moved(&graph, sizes, auto, &given, &forms);
+            unbroken::apply(&graph, sizes, &forms, &mut placement);
             bends::bend(chart, &graph, sizes, places, &mut placement);
             return without_gaps(placement, graph.real);
         }

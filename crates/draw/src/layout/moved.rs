@@ -3,14 +3,15 @@
 
 use std::collections::HashMap;
 
-use g7_model::{Chart, Layout, PlaceAt};
+use g7_model::{Chart, Layout, LinkForm, PlaceAt};
 
+use crate::layout::forms::{self, Jumps};
 use crate::layout::graph::Graph;
 use crate::layout::rooms::{BAR, CLEAR, DOUBLE, LINK, OVERHANG, SQUARE, extents};
 use crate::layout::route::{area, end, tidy};
 use crate::layout::section::{FAR, Named};
 use crate::layout::way::Ways;
-use crate::{Bar, End, Extent, Link, Placement, Point, Rect, Sizes};
+use crate::{Bar, Connector, End, Extent, Link, Placement, Point, Rect, Sizes};
 
 /// The places that the layout section gives, by node.
 #[inline(never)]
@@ -35,7 +36,7 @@ pub(crate) fn given(chart: &Chart, graph: &Graph, places: &[PlaceAt]) -> Vec<Opt
 /// A horizontal offset no greater than this is straightened.
 const ASKEW: i32 = 40;
 
-struct Moved<'a> {
+pub(crate) struct Moved<'a> {
     graph: &'a Graph,
     at: Vec<Point>,
     extents: Vec<Extent>,
@@ -45,11 +46,19 @@ struct Moved<'a> {
     /// Height of the line or double line below and above each node.
     below: Vec<i32>,
     above: Vec<i32>,
+    /// The ends of the links that the author wants broken off, shifted with their symbols.
+    jumps: Jumps,
 }
 
 /// The placement after the given places are applied.
 #[inline(never)]
-pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Option<Point>]) -> Placement {
+pub(crate) fn moved(
+    graph: &Graph,
+    sizes: &Sizes,
+    auto: Placement,
+    given: &[Option<Point>],
+    forms: &[Option<LinkForm>],
+) -> Placement {
     let count = given.iter().flatten().count();
     if count == 0 {
         return auto;
@@ -68,7 +77,8 @@ pub(crate) fn moved(graph: &Graph, sizes: &Sizes, auto: Placement, given: &[Opti
     let moved = given.iter().map(|g| by_hand || g.is_some()).collect();
     let extents = extents(graph, sizes);
     let texts = &sizes.transitions;
-    let mut m = Moved { graph, at, extents, texts, moved, below: Vec::new(), above: Vec::new() };
+    let jumps = forms::shifted(graph, &auto, forms, &at);
+    let mut m = Moved { graph, at, extents, texts, moved, below: Vec::new(), above: Vec::new(), jumps };
     m.lines();
     m.place(auto, sizes)
 }
@@ -131,7 +141,30 @@ pub(crate) fn arrows(points: &[Point]) -> Vec<(Point, (i8, i8))> {
         .collect()
 }
 
-impl Moved<'_> {
+impl<'a> Moved<'a> {
+    /// The symbols of a placement as they stand, with the rows and double lines at which its links part and meet.
+    #[inline(never)]
+    pub(crate) fn settled(graph: &'a Graph, sizes: &'a Sizes, p: &Placement) -> Moved<'a> {
+        let at = p.steps.iter().chain(&p.transitions).copied().collect();
+        let (extents, texts) = (extents(graph, sizes), &sizes.transitions[..]);
+        let (below, above, jumps) = (Vec::new(), Vec::new(), Jumps::new());
+        let mut m = Moved { graph, at, extents, texts, moved: vec![false; graph.nodes], below, above, jumps };
+        m.lines();
+        for l in p.links.iter().filter(|l| l.points.len() > 2) {
+            if let End::Step(n) = l.from {
+                m.below[n as usize] = l.points[1].y;
+            }
+            if let End::Step(n) = l.to {
+                m.above[n as usize] = l.points[l.points.len() - 2].y;
+            }
+        }
+        for b in &p.bars {
+            let side = if b.join { &mut m.above } else { &mut m.below };
+            side[graph.steps + b.transition as usize] = b.at.y;
+        }
+        m
+    }
+
     fn port(&self, n: u32) -> i32 {
         self.at[n as usize].y + if self.graph.is_step(n) { SQUARE } else { 0 }
     }
@@ -210,6 +243,9 @@ impl Moved<'_> {
         let mut links: Vec<Option<Link>> = vec![None; graph.links.len()];
         let mut again = Vec::new();
         for (n, &(from, to)) in graph.links.iter().enumerate() {
+            if self.jumps.contains_key(&(n as u32, true)) {
+                continue;
+            }
             let touched = below[from as usize] || above[to as usize];
             let (a, b) = (end(graph.steps, from), end(graph.steps, to));
             match drawn.remove(&(a, b)) {
@@ -235,10 +271,39 @@ impl Moved<'_> {
             links[n] = Some(link);
         }
         p.links = links.into_iter().flatten().collect();
-        let keep = |c: &crate::Connector| !p.links.iter().any(|l| (l.from, l.to) == (c.from, c.to));
+        let keep = |c: &Connector| !p.links.iter().any(|l| (l.from, l.to) == (c.from, c.to));
         p.connectors = auto.connectors.into_iter().filter(keep).collect();
+        self.jumps(&mut p.connectors, &below, &above);
         p.area = area(&p, &extents(graph, sizes));
         p
+    }
+
+    /// Puts the ends of jumps where their symbols stand now.
+    #[inline(never)]
+    fn jumps(&self, connectors: &mut [Connector], below: &[bool], above: &[bool]) {
+        let graph = self.graph;
+        let number = |(from, to): (End, End)| {
+            let is = |l: &(u32, u32)| (end(graph.steps, l.0), end(graph.steps, l.1)) == (from, to);
+            graph.links.iter().position(is).unwrap_or_default()
+        };
+        for c in connectors {
+            let l = number((c.from, c.to));
+            let Some(there) = self.jumps.get(&(l as u32, c.leaving)) else { continue };
+            let (from, to) = graph.links[l];
+            *c = if c.leaving && below[from as usize] {
+                let port = Point { x: self.at[from as usize].x, y: self.port(from) };
+                forms::leaving(there, port, self.below[from as usize])
+            } else if !c.leaving && above[to as usize] && self.joins(to) {
+                forms::arriving(there, self.above[to as usize])
+            } else {
+                there.clone()
+            };
+        }
+    }
+
+    /// True if links meet at a double line above a node.
+    fn joins(&self, n: u32) -> bool {
+        !self.graph.is_step(n) && self.graph.into.of(n).len() > 1
     }
 
     /// Draws the double lines of transitions that moved or whose neighbours moved; they span the
@@ -269,6 +334,9 @@ impl Moved<'_> {
     /// stands on the right side of it, otherwise beside the other links.
     #[inline(never)]
     fn column(&self, link: u32, fork: bool) -> i32 {
+        if let Some(jump) = self.jumps.get(&(link, fork)) {
+            return jump.at.x;
+        }
         let (from, to) = self.graph.links[link as usize];
         let (t, step) = if fork { (from, to) } else { (to, from) };
         let right_way = match fork {
@@ -288,7 +356,7 @@ impl Moved<'_> {
     }
 
     #[inline(never)]
-    fn link(&self, ways: &Ways, from: u32, to: u32) -> Link {
+    pub(crate) fn link(&self, ways: &Ways, from: u32, to: u32) -> Link {
         let graph = self.graph;
         let number =
             graph.out.of(from).iter().copied().find(|l| graph.links[*l as usize].1 == to).unwrap_or(0);

@@ -110,7 +110,7 @@ impl Places {
         for side in &b.sides {
             stack.push((side.block, at.x + side.x, at.y + side.y));
         }
-        for put in &b.puts {
+        for (k, put) in b.puts.iter().enumerate() {
             let y = at.y + put.y;
             match put.item {
                 Item::Node(n) => {
@@ -132,7 +132,9 @@ impl Places {
                 }
                 Item::Arrive(l) => {
                     let tail = Point { x: at.x, y: at.y + put.tail };
-                    self.broken.push((l, false, tail, Point { x: at.x, y: at.y + b.foot }));
+                    // At the symbol that follows; alone in its block it leads out of that.
+                    let next = b.puts.get(k + 1).map_or(b.foot, |next| next.y);
+                    self.broken.push((l, false, tail, Point { x: at.x, y: at.y + next }));
                 }
             }
         }

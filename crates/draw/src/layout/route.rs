@@ -165,6 +165,7 @@ fn connectors(s: &Shapes, p: &Places, placement: &mut Placement) {
             at: tip,
             points,
             text,
+            form: None,
         });
     }
     placement.connectors.sort_by_key(|c| {

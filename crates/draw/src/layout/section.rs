@@ -37,7 +37,7 @@ impl<'c> Named<'c> {
             Placed::Step(name) => self.steps.get(&*name.text).copied().map(End::Step),
             Placed::Transition(label) => self.labels.get(&*label.text).copied().map(End::Transition),
             Placed::TransitionNumber(n) => Some(End::Transition(*n)),
-            Placed::Comment(_) | Placed::Link(_) => None,
+            _ => None,
         }
     }
 }

@@ -373,7 +373,7 @@ impl<'a> Paper<'a> {
     fn connector(&self, from: End, to: End, leaving: bool, at: Point, named: Option<u32>) -> Connector {
         let w = named.map_or(0, |s| connector_width(&self.label(s)));
         let text = Rect { x: at.x + 80, y: at.y - 150, w, h: 150 };
-        Connector { from, to, leaving, at, points: Vec::new(), text }
+        Connector { from, to, leaving, at, points: Vec::new(), text, form: None }
     }
 
     fn frames(&self) -> Vec<Item> {

@@ -3,12 +3,16 @@
 
 use std::collections::{HashMap, HashSet};
 
-use g7_model::{Chart, ChartItem, ChartKind, Expr, Name, Place, Span, Step, StepKind, Transition, Type};
+use g7_model::{
+    Chart, ChartItem, ChartKind, Document, Expr, LinkForm, Name, Place, PlaceAt, Placed, Span, Step,
+    StepKind, Transition, Type,
+};
 
 use super::stub::{Stub, Token};
-use crate::draw::Symbols;
+use crate::draw::{Symbols, places};
+use crate::layout::forms::wanted;
 use crate::layout::layout;
-use crate::pages::Cells;
+use crate::pages::{Cells, cells};
 use crate::{Drawing, End, Item, Options, Part as Shown, Placement, Rect, Sizes};
 
 /// A chart as the division into sheets sees it.
@@ -17,10 +21,15 @@ pub(super) struct Flow<'a> {
     /// The preceding transitions of each step.
     pub(super) into: Vec<Vec<u32>>,
     pub(super) symbols: Symbols<'a>,
+    /// The forms that the layout section gives to links.
+    forms: HashMap<(End, End), LinkForm>,
 }
 
 impl<'a> Flow<'a> {
-    pub(super) fn new(chart: &'a Chart, cells: Cells, options: &Options) -> Flow<'a> {
+    pub(super) fn new(document: &Document, chart: &'a Chart, options: &Options) -> Flow<'a> {
+        let cells = cells(chart);
+        let places = places(document, chart);
+        let forms = wanted(chart, places);
         let mut into = vec![Vec::new(); cells.steps.len()];
         for (t, to) in (0..).zip(&cells.to) {
             for s in to {
@@ -29,7 +38,7 @@ impl<'a> Flow<'a> {
                 }
             }
         }
-        Flow { cells, into, symbols: Symbols::new(chart, options) }
+        Flow { cells, into, symbols: Symbols::new(chart, places, options), forms }
     }
 
     pub(super) fn from(&self, t: u32) -> &[u32] {
@@ -173,11 +182,11 @@ impl Part {
                 Some(Member::Own(n)) => Shown::Transition { transition: *n, bar, text },
                 other => stub(other, transition),
             },
-            Shown::Link { link, from, to, held, bends } => {
-                Shown::Link { link, from: self.whole(from), to: self.whole(to), held, bends }
+            Shown::Link { link, from, to, held, bends, form } => {
+                Shown::Link { link, from: self.whole(from), to: self.whole(to), held, bends, form }
             }
-            Shown::Connector { connector, from, to, leaving } => {
-                Shown::Connector { connector, from: self.whole(from), to: self.whole(to), leaving }
+            Shown::Connector { connector, from, to, leaving, form } => {
+                Shown::Connector { connector, from: self.whole(from), to: self.whole(to), leaving, form }
             }
             other @ (Shown::Comment { .. } | Shown::Text) => other,
         };
@@ -202,7 +211,9 @@ impl Part {
 fn stub(member: Option<&Member>, connector: u32) -> Shown {
     match member {
         Some(Member::Stub(stub)) => match stub.tokens.first() {
-            Some(t) => Shown::Connector { connector, from: t.from, to: t.to, leaving: stub.leaving },
+            Some(t) => {
+                Shown::Connector { connector, from: t.from, to: t.to, leaving: stub.leaving, form: None }
+            }
             None => Shown::Text,
         },
         Some(Member::Own(_)) | None => Shown::Text,
@@ -338,9 +349,31 @@ impl Making<'_, '_> {
         }
     }
 
+    /// The forms of the links between symbols of the part.
+    fn forms(&self) -> Vec<PlaceAt> {
+        if self.flow.forms.is_empty() {
+            return Vec::new();
+        }
+        let own = |list: &[Member]| -> HashMap<u32, usize> {
+            let number = |(n, m): (usize, &Member)| if let Member::Own(s) = m { Some((*s, n)) } else { None };
+            list.iter().enumerate().filter_map(number).collect()
+        };
+        let (steps, transitions) = (own(&self.steps), own(&self.transitions));
+        let symbol = |end: &End| match end {
+            End::Step(n) => steps.get(n).map(|n| Placed::Step(Making::name(*n))),
+            End::Transition(n) => transitions.get(n).map(|n| Placed::TransitionNumber(*n as u32)),
+        };
+        let entry = |((from, to), form): (&(End, End), &LinkForm)| {
+            let what = Placed::LinkForm(Box::new((symbol(from)?, symbol(to)?)), *form);
+            Some(PlaceAt { what, x: 0, y: 0, then: Vec::new(), at: Place::default() })
+        };
+        self.flow.forms.iter().filter_map(entry).collect()
+    }
+
     fn done(self) -> Part {
+        let forms = self.forms();
         let Making { steps, transitions, chart, sizes, .. } = self;
-        let placement = layout(&chart, &sizes, &[]);
+        let placement = layout(&chart, &sizes, &forms);
         let boxes = placement
             .steps
             .iter()

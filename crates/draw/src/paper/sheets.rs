@@ -9,7 +9,6 @@ use g7_model::{Chart, Document};
 use super::frame::Paper;
 use super::part::{Flow, Part};
 use crate::draw::{draw, notes_of};
-use crate::pages::cells;
 use crate::{Drawing, End, Item, Options, Point, Rect};
 
 /// One sheet of a chart.
@@ -63,7 +62,7 @@ pub fn sheets(
         let symbols = steps.chain(transitions).collect();
         return vec![Sheet { drawing: whole, symbols, away: Vec::new(), scale }];
     }
-    let flow = Flow::new(chart, cells(chart), options);
+    let flow = Flow::new(document, chart, options);
     let digits = (first + flow.cells.order.len()).to_string().len();
     let notes = notes(document, chart, &flow, &whole);
     let full = room.map(|side| side * 1000 / LEAST);

@@ -1,6 +1,8 @@
-//! Actions: rectangles at the right of a step, one below the other.
+//! Actions: rectangles at the right of a step, one below the other, or side by side in one row.
 
-use g7_model::{Action, ActionKind, Expr, ExprKind, Order, Qualifier, Situation, Step, Target, UnaryOp};
+use g7_model::{
+    Action, ActionForm, ActionKind, Expr, ExprKind, Order, Qualifier, Situation, Step, Target, UnaryOp,
+};
 
 use crate::ink::{Picture, stack};
 use crate::symbols::parts::{ACTION_TEXT, SMALL, SQUARE, quoted};
@@ -15,6 +17,13 @@ const LINES: usize = 6;
 const WIDEST: i32 = 2800;
 /// Margin left and right of the text in its rectangle.
 const PAD: i32 = 80;
+
+/// Distance from the left edge of a rectangle to the stub over it.
+const STUB: i32 = 120;
+/// Distance from a stub to its condition.
+const BESIDE_STUB: i32 = 60;
+/// Distance from a stub with a flag to its event.
+const BESIDE_FLAG: i32 = 150;
 
 /// The frame round an action.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -60,9 +69,54 @@ struct Row {
 }
 
 /// Draws the actions of a step; `edge` is the right edge of its square.
-#[inline(never)]
-pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options) -> Vec<(u32, Picture)> {
+pub(crate) fn actions(
+    step: &Step,
+    list: &[Action],
+    edge: i32,
+    form: ActionForm,
+    options: &Options,
+) -> Vec<(u32, Picture)> {
     let rows: Vec<Row> = list.iter().map(|a| row(step, a, options.look)).collect();
+    match form {
+        ActionForm::Column => in_column(&rows, edge),
+        ActionForm::Row => in_row(&rows, edge),
+    }
+}
+
+/// Draws actions side by side: rectangles of one height that touch each other, comments behind them.
+#[inline(never)]
+fn in_row(rows: &[Row], edge: i32) -> Vec<(u32, Picture)> {
+    let framed = |r: &Row| r.frame != Frame::None;
+    let h = rows.iter().filter(|r| framed(r)).map(|r| r.height(true)).max().unwrap_or(0);
+    let y = (SQUARE - h).max(100) / 2;
+    let mut x = edge + GAP;
+    let mut out = Vec::new();
+    let all = || (0..).zip(rows);
+    for (index, row) in all().filter(|(_, r)| framed(r)).chain(all().filter(|(_, r)| !framed(r))) {
+        let mut p = Picture { title: row.title.clone(), ..Picture::default() };
+        if framed(row) {
+            if x == edge + GAP {
+                p.line("g7-thin", &[(edge, SQUARE / 2), (x, SQUARE / 2)]);
+            }
+            let cell = row.sign.width();
+            // The condition of an action stands over its own rectangle.
+            let w = row.width(cell).max(row.stub_width());
+            row.draw(&mut p, Rect { x, y, w, h }, cell, true);
+            x += w;
+        } else {
+            let (w, h) = (row.width(0), row.height(true));
+            row.draw(&mut p, Rect { x: x + PAD, y: (SQUARE - h) / 2, w, h }, 0, true);
+            x += w + 2 * PAD;
+        }
+        out.push((index, p));
+    }
+    out.sort_by_key(|(index, _)| *index);
+    out
+}
+
+/// Draws actions one below the other.
+#[inline(never)]
+fn in_column(rows: &[Row], edge: i32) -> Vec<(u32, Picture)> {
     // The boxes of qualifiers have one width, so that they form a column.
     let cell = rows.iter().map(|r| r.sign.width()).max().unwrap_or(0);
     let w = rows.iter().filter(|r| r.frame != Frame::None).map(|r| r.width(cell)).max().unwrap_or(0);
@@ -72,7 +126,7 @@ pub(crate) fn actions(step: &Step, list: &[Action], edge: i32, options: &Options
     let mut contiguous = false;
     // The lower end of the vertical line that joins the actions.
     let mut bus: Option<i32> = None;
-    for (index, row) in (0..).zip(&rows) {
+    for (index, row) in (0..).zip(rows) {
         let h = row.height(rows.len() == 1);
         let over = row.stub_height();
         let joins = row.frame != Frame::None;
@@ -305,6 +359,16 @@ impl Row {
         }
     }
 
+    /// The width of the condition or event over the rectangle, with its stub.
+    fn stub_width(&self) -> i32 {
+        let (lines, before) = match &self.stub {
+            None => return 0,
+            Some(Stub::Condition(lines)) => (lines, STUB + BESIDE_STUB),
+            Some(Stub::Event(lines)) => (lines, STUB + BESIDE_FLAG),
+        };
+        before + lines.iter().map(|l| l.width(SMALL)).max().unwrap_or(0) + PAD
+    }
+
     #[inline(never)]
     fn draw(&self, p: &mut Picture, at: Rect, cell: i32, alone: bool) {
         let Rect { x, y, w, h } = at;
@@ -339,7 +403,7 @@ impl Row {
         };
         p.lines("g7-act", (x + left, first), size, &self.lines);
         if let Some(stub) = &self.stub {
-            draw_stub(p, stub, x + 120, y);
+            draw_stub(p, stub, x + STUB, y);
         }
     }
 
@@ -397,9 +461,9 @@ fn draw_stub(p: &mut Picture, stub: &Stub, x: i32, y: i32) {
     p.line("g7-thin", &[(x, y), (x, top)]);
     let text = if event {
         p.shape("g7-mark", &[(x, top), (x + 110, top + 45), (x, top + 90)]);
-        x + 150
+        x + BESIDE_FLAG
     } else {
-        x + 60
+        x + BESIDE_STUB
     };
     p.lines("g7-cond", (text, top + up), SMALL, lines);
 }

@@ -1,6 +1,6 @@
 //! Steps: the square with its name, and the signs of the kind of step.
 
-use g7_model::{Step, StepKind};
+use g7_model::{ActionForm, Step, StepKind};
 
 use crate::ink::{Picture, rise, stack};
 use crate::symbols::action;
@@ -28,7 +28,7 @@ const CORNER: i32 = 110;
 /// Greatest width of a line of the comment.
 const COMMENT: i32 = 2000;
 
-pub(crate) fn step(step: &Step, options: &Options) -> StepShape {
+pub(crate) fn step(step: &Step, form: ActionForm, options: &Options) -> StepShape {
     let mut picture = Picture::default();
     let inset = if step.initial { INSET } else { 0 };
     let fitted = name_lines(&step.name.text, SQUARE - 2 * inset - 50);
@@ -42,7 +42,7 @@ pub(crate) fn step(step: &Step, options: &Options) -> StepShape {
     }
     beside(&mut picture, step, square);
     let shown = if options.actions { step.actions.as_slice() } else { &[] };
-    let actions = action::actions(step, shown, square.x + w, options);
+    let actions = action::actions(step, shown, square.x + w, form, options);
     let mut below = SQUARE;
     let mut right = square.x + w;
     for area in actions.iter().filter_map(|(_, p)| p.area()) {

@@ -4,6 +4,7 @@
 mod bends;
 mod charts;
 mod conventions;
+mod forms;
 mod geometry;
 mod imported;
 mod maker;

@@ -117,7 +117,7 @@ fn settled(draft: &Draft<'_>, item: &Item) -> Option<Vec<PlaceAt>> {
             let has = |c: &Chart| c.transitions().any(|t| t.label.as_ref() == Some(label));
             has(now) || !has(then)
         }
-        Placed::TransitionNumber(_) | Placed::Comment(_) | Placed::Link(_) => true,
+        _ => true,
     };
     let mut places = layout.places.clone();
     places.retain_mut(|p| {
@@ -132,7 +132,7 @@ fn settled(draft: &Draft<'_>, item: &Item) -> Option<Vec<PlaceAt>> {
 
 /// True if an entry of a layout names a link that the chart has.
 fn joined(chart: &Chart, entry: &Placed) -> bool {
-    let Placed::Link(ends) = entry else { return false };
+    let (Placed::Link(ends) | Placed::LinkForm(ends, _)) = entry else { return false };
     let (step, symbol, leaving) = match &**ends {
         (Placed::Step(step), transition) => (step, transition, true),
         (transition, Placed::Step(step)) => (step, transition, false),

@@ -58,7 +58,7 @@ impl<'a> Placements<'a> {
                 Placed::TransitionNumber(n) => {
                     placed.transitions.extend(Some(*n as usize).filter(|n| *n < count))
                 }
-                Placed::Comment(_) | Placed::Link(_) => {}
+                _ => {}
             }
         }
         placed

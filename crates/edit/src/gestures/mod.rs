@@ -4,6 +4,7 @@ mod build;
 mod chosen;
 mod delete;
 mod fields;
+mod forms;
 mod graph;
 mod group;
 mod heal;
@@ -65,6 +66,9 @@ pub(crate) fn carry_out(d: &mut Draft<'_>, gesture: &Gesture) -> Result<(), Refu
         Gesture::Move { ids, dx, dy } => places::shift(d, ids, *dx, *dy),
         Gesture::Align { ids, how } => places::align(d, ids, *how),
         Gesture::Bend { link, points } => places::bend(d, link, points),
+        Gesture::LinkForm { link, form } => forms::link(d, link, *form),
+        Gesture::ActionForm { id, form } => forms::actions(d, id, *form),
+        Gesture::Sheet { chart, at } => forms::sheet(d, chart.as_deref(), *at),
         Gesture::Tidy { chart } => places::tidy(d, chart),
         Gesture::Paste { chart, text, at } => paste::paste(d, chart, text, *at),
         Gesture::Macro { ids } => group::into_macro(d, ids),

@@ -85,7 +85,7 @@ impl Pasted {
                 let found = all.filter(|t| t.label.as_ref() == Some(label)).map(|t| t.at.0);
                 self.id(d, chart, found.last()?)
             }
-            Placed::Comment(_) | Placed::Link(_) => None,
+            _ => None,
         };
         let known: Vec<(&PlaceAt, Option<ItemId>)> = places.iter().map(|p| (p, id(d, &p.what))).collect();
         let first = known.iter().find(|(p, _)| matches!(p.what, Placed::Step(_))).or(known.first());

@@ -10,7 +10,7 @@ use super::notes;
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::Alignment;
-use crate::id::{ItemId, Part};
+use crate::id::{End, ItemId, Part};
 
 /// Gives a step, transition or comment a place.
 #[inline(never)]
@@ -44,17 +44,27 @@ fn placed(d: &Draft<'_>, chart: &str, at: Span) -> Result<Placed, Refusal> {
     Ok(Placed::TransitionNumber(u32::try_from(n).unwrap_or(u32::MAX)))
 }
 
-/// Gives a link bends, or takes them away.
-#[inline(never)]
-pub(crate) fn bend(d: &mut Draft<'_>, id: &ItemId, points: &[[f64; 2]]) -> Result<(), Refusal> {
-    let Part::Link(a, b) = &id.part else { return refuse(say!("this is done with a link; choose one")) };
-    let (chart, step, at, leaving) = link(d, &id.chart, a, b)?;
+/// The chart of a link that is there, and its ends as a layout section names them.
+pub(super) fn link_ends(
+    d: &mut Draft<'_>,
+    chart: &str,
+    a: &End,
+    b: &End,
+) -> Result<(String, (Placed, Placed)), Refusal> {
+    let (chart, step, at, leaving) = link(d, chart, a, b)?;
     let t = d.transition(&chart, at)?;
     if !(if leaving { &t.from } else { &t.to }).iter().any(|n| *n.text == *step) {
         return refuse(say!("this link is not there"));
     }
     let (step, transition) = (Placed::Step(d.new_name(&step)), placed(d, &chart, at)?);
-    let ends = if leaving { (step, transition) } else { (transition, step) };
+    Ok((chart, if leaving { (step, transition) } else { (transition, step) }))
+}
+
+/// Gives a link bends, or takes them away.
+#[inline(never)]
+pub(crate) fn bend(d: &mut Draft<'_>, id: &ItemId, points: &[[f64; 2]]) -> Result<(), Refusal> {
+    let Part::Link(a, b) = &id.part else { return refuse(say!("this is done with a link; choose one")) };
+    let (chart, ends) = link_ends(d, &id.chart, a, b)?;
     let what = Placed::Link(Box::new(ends));
     let points: Vec<(i32, i32)> = points.iter().map(|p| point(*p)).collect::<Result<_, _>>()?;
     let at = d.fresh();
@@ -250,7 +260,7 @@ fn distribute(
     Ok(())
 }
 
-/// Deletes the places of symbols; comments keep theirs.
+/// Deletes the places of symbols, and the bends and forms of links; comments and the chart itself keep their places.
 #[inline(never)]
 pub(crate) fn tidy(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
     d.chart(chart)?;
@@ -258,7 +268,7 @@ pub(crate) fn tidy(d: &mut Draft<'_>, chart: &str) -> Result<(), Refusal> {
         if let Item::Layout(l) = item
             && *l.chart.text == *chart
         {
-            l.places.retain(|p| matches!(p.what, Placed::Comment(_)));
+            l.places.retain(|p| matches!(p.what, Placed::Comment(_) | Placed::Actions(..) | Placed::Sheet));
         }
     }
     without_empty_layout(d, chart);

@@ -350,5 +350,28 @@ pub const LAYOUT: &[Word] = &[
         "comment",
         ["the place of a comment", "la place d’un commentaire", "o lugar de um comentário"],
     ),
-    Word::free("link", ["the bends of a link", "les coudes d’une liaison", "as dobras de uma ligação"]),
+    Word::free(
+        "link",
+        [
+            "the bends of a link, or the form in which it is drawn",
+            "les coudes d’une liaison, ou la forme sous laquelle elle est dessinée",
+            "as dobras de uma ligação, ou a forma em que é desenhada",
+        ],
+    ),
+    Word::free(
+        "actions",
+        [
+            "actions side by side or one below the other",
+            "les actions côte à côte ou l’une sous l’autre",
+            "as ações lado a lado ou uma por baixo da outra",
+        ],
+    ),
+    Word::free(
+        "sheet",
+        [
+            "the place of the chart on a sheet of several charts",
+            "la place du grafcet sur une feuille de plusieurs grafcets",
+            "o lugar do grafcet numa folha de vários grafcets",
+        ],
+    ),
 ];

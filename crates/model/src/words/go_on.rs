@@ -37,6 +37,14 @@ pub const CLAUSES: &[Word] = &[
         ],
     )
     .then(" clearing"),
+    Word::free(
+        "as",
+        [
+            "the form in which a link is drawn: `line` or `jump`",
+            "la forme sous laquelle une liaison est dessinée : `line` ou `jump`",
+            "a forma em que uma ligação é desenhada: `line` ou `jump`",
+        ],
+    ),
     Word::free("at", ["the address of a variable", "l’adresse d’une variable", "o endereço de uma variável"]),
     Word::free(
         "retain",

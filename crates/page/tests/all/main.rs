@@ -10,4 +10,5 @@ mod proofs;
 mod properties;
 mod redrawn;
 mod runs;
+mod sheet;
 mod used;

@@ -6,8 +6,8 @@ use crate::lexer::Tok;
 use crate::words::St;
 use g7_iec::constant;
 use g7_model::{
-    BinaryOp, Expr, ExprKind, Layout, Name, PlaceAt, Placed, Problem, Property, PropertyKind, Said, Scenario,
-    Span, TestStmt, TestStmtKind, codes, say, words,
+    ActionForm, BinaryOp, Expr, ExprKind, Layout, LinkForm, Name, PlaceAt, Placed, Problem, Property,
+    PropertyKind, Said, Scenario, Span, TestStmt, TestStmtKind, codes, say, words,
 };
 
 impl Parser<'_> {
@@ -370,7 +370,16 @@ impl Parser<'_> {
                 self.bump();
                 let from = self.link_end()?;
                 self.expect(Tok::Arrow, say!("`->`"));
-                Placed::Link(Box::new((from, self.link_end()?)))
+                let ends = Box::new((from, self.link_end()?));
+                if self.eat_word("as") { self.link_form(ends) } else { Placed::Link(ends) }
+            }
+            "actions" => {
+                self.bump();
+                self.action_form()
+            }
+            "sheet" => {
+                self.bump();
+                Placed::Sheet
             }
             "comment" => {
                 self.bump();
@@ -382,6 +391,9 @@ impl Parser<'_> {
             }
             _ => return None,
         };
+        if !what.has_place() {
+            return Some(PlaceAt { what, x: 0, y: 0, then: Vec::new(), at: self.since(start).into() });
+        }
         if !self.eat_word("at") {
             self.expected(say!("`at` and a place such as `(0, 1.5)`"));
         }
@@ -408,6 +420,35 @@ impl Parser<'_> {
         } else {
             Placed::Transition(self.name(say!("the label of a transition, or `#` and its place in the text")))
         })
+    }
+
+    /// `of step 3 in row`, or `in row` for all steps.
+    fn action_form(&mut self) -> Placed {
+        let step = self.eat_word("of").then(|| {
+            if !self.eat_word("step") {
+                self.expected(say!("`step` and the name of a step"));
+            }
+            Box::new(Placed::Step(self.name(say!("the name of a step"))))
+        });
+        let is_in = self.eat_word("in");
+        match ActionForm::ALL.into_iter().find(|form| is_in && self.eat_word(form.word())) {
+            Some(form) => Placed::Actions(step, form),
+            None => {
+                self.expected(say!("`in row` or `in column`"));
+                Placed::Actions(step, ActionForm::Column)
+            }
+        }
+    }
+
+    /// `line` or `jump`.
+    fn link_form(&mut self, ends: Box<(Placed, Placed)>) -> Placed {
+        match LinkForm::ALL.into_iter().find(|form| self.eat_word(form.word())) {
+            Some(form) => Placed::LinkForm(ends, form),
+            None => {
+                self.expected(say!("`line` or `jump`"));
+                Placed::LinkForm(ends, LinkForm::Line)
+            }
+        }
     }
 
     /// One end of a link.

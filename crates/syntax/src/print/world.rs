@@ -322,6 +322,9 @@ impl Printer<'_> {
 
     pub(super) fn place_at(&mut self, place: &PlaceAt) {
         self.placed(&place.what);
+        if !place.what.has_place() {
+            return;
+        }
         self.push(" at ");
         self.point((place.x, place.y));
         for bend in &place.then {
@@ -345,13 +348,31 @@ impl Printer<'_> {
                 self.push("comment ");
                 self.push(&quote::quote(text, '"'));
             }
-            Placed::Link(ends) => {
-                self.push("link ");
-                self.placed(&ends.0);
-                self.push(" -> ");
-                self.placed(&ends.1);
+            Placed::Link(ends) => self.link_ends(ends),
+            Placed::Actions(step, form) => {
+                self.push("actions ");
+                if let Some(step) = step {
+                    self.push("of ");
+                    self.placed(step);
+                    self.push(" ");
+                }
+                self.push("in ");
+                self.push(form.word());
+            }
+            Placed::Sheet => self.push("sheet"),
+            Placed::LinkForm(ends, form) => {
+                self.link_ends(ends);
+                self.push(" as ");
+                self.push(form.word());
             }
         }
+    }
+
+    fn link_ends(&mut self, ends: &(Placed, Placed)) {
+        self.push("link ");
+        self.placed(&ends.0);
+        self.push(" -> ");
+        self.placed(&ends.1);
     }
 
     fn point(&mut self, (x, y): (i32, i32)) {

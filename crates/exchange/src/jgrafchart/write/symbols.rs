@@ -68,7 +68,7 @@ impl Places {
                     slot.into_iter().for_each(|s| *s = Some(at));
                 }
                 Placed::Comment(text) => comments.push((text.to_string(), pixels(at, 0))),
-                Placed::Link(_) => {}
+                _ => {}
             }
         }
         if steps.len() + transitions.len() > MOST_DRAWN {

@@ -57,7 +57,7 @@ fn written(layout: &Layout, chart: &Chart, places: &mut Places) {
                     *slot = at;
                 }
             }
-            Placed::Comment(_) | Placed::Link(_) => {}
+            _ => {}
         }
     }
 }

@@ -4,8 +4,8 @@ use crate::grammar::expressions::tree;
 use crate::grammar::read;
 use crate::grammar::statements::lines;
 use g7_model::{
-    FbKind, FileId, Item, Name, Nanos, Placed, PlantItem, ProfileName, PropertyKind, Switch, TargetPlc,
-    TestStmt, TestStmtKind, Type, ValueType, VarKind,
+    ActionForm, FbKind, FileId, Item, LinkForm, Name, Nanos, Placed, PlantItem, ProfileName, PropertyKind,
+    Switch, TargetPlc, TestStmt, TestStmtKind, Type, ValueType, VarKind,
 };
 use g7_syntax::{LineColumn, LineIndex, parse, print};
 
@@ -217,7 +217,9 @@ fn properties_and_layouts() {
          prove a and b leads to c \"at last\"\nprove at most 2 of (a, b, c)\n\
          prove never a and b with Tank \"closed\"\nassume not (a and b)\n\
          layout G { step 1 at (0, 1.5) transition t7 at (-2.25, 3) transition #0 at (0,0) comment \"x\" at (1, 1)\n\
-         link transition #0 -> step 1 at (-5, 12.5), (0, -3) link step 1 -> transition t7 at (3, 4) }",
+         link transition #0 -> step 1 at (-5, 12.5), (0, -3) link step 1 -> transition t7 at (3, 4)
+         link transition #0 -> step 1 as jump link step 1 -> transition t7 as line
+         actions in row actions of step 1 in column sheet at (120, -4.5) }",
     );
     let properties: Vec<String> = d
         .items
@@ -257,7 +259,22 @@ fn properties_and_layouts() {
     );
     let Some(Item::Layout(layout)) = d.items.last() else { panic!("{d:?}") };
     let places: Vec<_> = layout.places.iter().map(|p| (p.x, p.y)).collect();
-    assert_eq!(places, [(0, 150), (-225, 300), (0, 0), (100, 100), (-500, 1250), (300, 400)]);
+    assert_eq!(
+        places,
+        [
+            (0, 150),
+            (-225, 300),
+            (0, 0),
+            (100, 100),
+            (-500, 1250),
+            (300, 400),
+            (0, 0),
+            (0, 0),
+            (0, 0),
+            (0, 0),
+            (12000, -450)
+        ]
+    );
     let bends: Vec<_> = layout.places.iter().flat_map(|p| &p.then).collect();
     assert_eq!(bends, [&(0, -300)]);
     assert!(matches!(&layout.places[1].what, Placed::Transition(n) if &*n.text == "t7"));
@@ -266,6 +283,16 @@ fn properties_and_layouts() {
     let Placed::Link(back) = &layout.places[4].what else { panic!("{layout:?}") };
     assert!(matches!(&**back, (Placed::TransitionNumber(0), Placed::Step(n)) if &*n.text == "1"));
     let Placed::Link(on) = &layout.places[5].what else { panic!("{layout:?}") };
+    assert!(matches!(&**on, (Placed::Step(_), Placed::Transition(n)) if &*n.text == "t7"));
+    let Placed::LinkForm(back, LinkForm::Jump) = &layout.places[6].what else { panic!("{layout:?}") };
+    assert!(matches!(&**back, (Placed::TransitionNumber(0), Placed::Step(n)) if &*n.text == "1"));
+    assert_eq!(layout.places[8].what, Placed::Actions(None, ActionForm::Row));
+    let Placed::Actions(Some(step), ActionForm::Column) = &layout.places[9].what else {
+        panic!("{layout:?}")
+    };
+    assert!(matches!(&**step, Placed::Step(n) if &*n.text == "1"));
+    assert_eq!(layout.places[10].what, Placed::Sheet);
+    let Placed::LinkForm(on, LinkForm::Line) = &layout.places[7].what else { panic!("{layout:?}") };
     assert!(matches!(&**on, (Placed::Step(_), Placed::Transition(n)) if &*n.text == "t7"));
 }
 

@@ -3,8 +3,8 @@
 use crate::roundtrip::charts::{at, comment, param};
 use crate::roundtrip::expressions::{block, duration, expr, name, target, text, ty};
 use g7_model::{
-    Arrivals, Binding, Drive, Expr, ExprKind, Layout, Parts, Path, PlaceAt, Placed, Plant, PlantItem,
-    Property, PropertyKind, Rate, Scenario, StateVar, TestStmt, TestStmtKind, View,
+    ActionForm, Arrivals, Binding, Drive, Expr, ExprKind, Layout, LinkForm, Parts, Path, PlaceAt, Placed,
+    Plant, PlantItem, Property, PropertyKind, Rate, Scenario, StateVar, TestStmt, TestStmtKind, View,
 };
 use proptest::prelude::*;
 
@@ -125,9 +125,15 @@ pub(crate) fn layout() -> impl Strategy<Value = Layout> {
         symbol(),
         text().prop_map(Placed::Comment),
         (symbol(), symbol()).prop_map(|ends| Placed::Link(Box::new(ends))),
+        (symbol(), symbol(), prop::sample::select(&LinkForm::ALL[..]))
+            .prop_map(|(from, to, form)| Placed::LinkForm(Box::new((from, to)), form)),
+        (prop::option::of(name()), prop::sample::select(&ActionForm::ALL[..]))
+            .prop_map(|(step, form)| Placed::Actions(step.map(|s| Box::new(Placed::Step(s))), form)),
+        Just(Placed::Sheet),
     ];
     let point = || (-1_000_000..=1_000_000i32, any::<i32>().prop_map(|y| y.max(-i32::MAX)));
     let place = (what, point(), prop::collection::vec(point(), 0..3)).prop_map(|(what, (x, y), then)| {
+        let (x, y) = if what.has_place() { (x, y) } else { (0, 0) };
         let then = if matches!(what, Placed::Link(_)) { then } else { Vec::new() };
         PlaceAt { what, x, y, then, at: at() }
     });
