@@ -15,10 +15,10 @@ struct Typed {
 /// The changes of a text, and those that were undone.
 #[derive(Clone, Debug, Default)]
 pub struct History {
-    /// What takes each change back. The last one fits the present text, each other one the text after the next
+    /// The splices that take each change back. The last one fits the present text, each other one the text after the next
     /// one was taken back.
     done: Vec<Vec<Splice>>,
-    /// What makes each undone change again, in the same order.
+    /// The splices that make each undone change again, in the same order.
     undone: Vec<Vec<Splice>>,
     /// The last of `done`, if the user typed it and may go on.
     typed: Option<Typed>,

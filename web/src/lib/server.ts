@@ -290,6 +290,7 @@ class Server implements Door {
       address.protocol = address.protocol === 'https:' ? 'wss:' : 'ws:';
       address.searchParams.set('token', this.#token);
       address.searchParams.set('window', here);
+      address.searchParams.set('language', prefs.language);
       const socket = new WebSocket(address);
       socket.onopen = () => {
         link.state = 'up';

@@ -59,7 +59,7 @@ export class Gathering {
     this.#ready = false;
     const text = this.file.text;
     const [sent, waited] = [this.#sent, this.#waiting];
-    // What is changed from now on is a change of this text.
+    // Changes from now on are changes of this text.
     [this.#sent, this.#waiting] = [null, null];
     const asked = { do: 'together_join', file: this.file.name, name, text, edits, key: sent?.key ?? null } as const;
     const joined = await server.call(asked).catch((error: unknown) => {

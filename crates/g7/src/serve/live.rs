@@ -11,7 +11,7 @@ use axum::extract::ws::{CloseFrame, Message, WebSocket, WebSocketUpgrade};
 use axum::extract::{Query, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
-use g7_model::say;
+use g7_model::{Language, say};
 use g7_store::users::Role;
 use serde::Deserialize;
 use serde_json::value::RawValue;
@@ -27,7 +27,7 @@ use super::places::Place;
 use super::refusal::Refusal;
 use super::runs::letter;
 use super::shared::{Limits, Shared};
-use super::together;
+use super::together::talk;
 use crate::operator::{NAME, Order, Wish};
 use crate::who::Who;
 
@@ -58,6 +58,9 @@ struct Head {
 pub(super) struct Asks {
     #[serde(default)]
     window: String,
+    /// The language of the page.
+    #[serde(default)]
+    language: String,
 }
 
 /// Opens the WebSocket of a client if there is room for it.
@@ -76,6 +79,7 @@ pub(super) async fn live(
     };
     // A client without a name has no unsaved work.
     let owner = routes::owner(&who, &asks.window).ok().map(|owner| shared.drafts.owners.enter(owner));
+    let language = Language::of(&asks.language).unwrap_or_default();
     let most = shared.limits.message;
     upgrade
         .max_message_size(most)
@@ -84,14 +88,14 @@ pub(super) async fn live(
         .read_buffer_size(8 << 10)
         .write_buffer_size(0)
         .on_upgrade(move |socket| async move {
-            attend(socket, shared, who, seat).await;
+            attend(socket, shared, Outbox::of(who, language), seat).await;
             drop(owner);
         })
 }
 
 /// Serves a client until it leaves or is disconnected.
-async fn attend(mut socket: WebSocket, shared: Shared, who: Who, seat: Place) {
-    let outbox = Arc::new(Outbox::of(who));
+async fn attend(mut socket: WebSocket, shared: Shared, outbox: Outbox, seat: Place) {
+    let outbox = Arc::new(outbox);
     let mut sessions = shared.access.as_ref().map(|access| access.hear());
     shared.clients.enter(&outbox);
     let limits = shared.limits;
@@ -150,7 +154,7 @@ async fn attend(mut socket: WebSocket, shared: Shared, who: Who, seat: Place) {
             break;
         }
     }
-    together::gone(&shared, &outbox);
+    talk::gone(&shared, &outbox);
     // Runs hold the client by a weak reference only, so this frees all waiting messages.
     drop(outbox);
     drop(seat);
@@ -195,7 +199,8 @@ async fn call_of(shared: &Shared, outbox: &Arc<Outbox>, id: u64, call: &RawValue
         serde_json::from_str(call.get()).map_err(|e| format!("this message means nothing: {e}"))?;
     let who = now(shared, outbox, true).ok_or("the session is over: log in again")?;
     if head.r#do.starts_with("together_") {
-        return together::call(shared, &who, outbox, id, call.get());
+        return talk::call(shared, &who, outbox, id, call.get())
+            .map_err(|no| no.in_language(outbox.language()));
     }
     if !matches!(head.r#do.as_str(), "runs" | "watch" | "unwatch") && !head.r#do.starts_with("operator_") {
         // Runs of a simulation touch no machine; they are shared with others all the same.

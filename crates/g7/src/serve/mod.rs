@@ -286,7 +286,7 @@ impl Open {
         };
         let app = app(Arc::clone(shared), rules.guard(pass, guests.clone(), bound));
         runtime.spawn(tell_changes(Arc::clone(shared)));
-        runtime.spawn(together::tell_moves(Arc::clone(shared)));
+        runtime.spawn(together::talk::tell_moves(Arc::clone(shared)));
         let all = tokens.iter().chain(&guests).cloned().collect();
         runtime.spawn(look_after(rules.clone(), all));
         runtime.spawn(listen::listen(listener, app, rules.door()?));

@@ -12,6 +12,7 @@ use std::collections::{BTreeSet, VecDeque};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use axum::extract::ws::Utf8Bytes;
+use g7_model::Language;
 use tokio::sync::Notify;
 
 use crate::who::Who;
@@ -26,6 +27,7 @@ const BYTES: usize = 4 << 20;
 pub(crate) struct Outbox {
     /// Who reads them, as of the begin of the connection.
     who: Who,
+    language: Language,
     inner: Mutex<Inner>,
     ring: Notify,
 }
@@ -59,13 +61,18 @@ pub(crate) enum Next {
 
 impl Outbox {
     /// The messages for someone.
-    pub(crate) fn of(who: Who) -> Outbox {
-        Outbox { who, ..Outbox::default() }
+    pub(crate) fn of(who: Who, language: Language) -> Outbox {
+        Outbox { who, language, ..Outbox::default() }
     }
 
     /// Who reads them.
     pub(crate) fn who(&self) -> &Who {
         &self.who
+    }
+
+    /// The language of the page that reads them.
+    pub(crate) fn language(&self) -> Language {
+        self.language
     }
 
     /// Adds a frame of a run; it may be dropped if the client is behind.

@@ -171,7 +171,7 @@ impl Server {
             tokio::select! {
                 () = listen::listen(listener, app, listen::Door::default()) => {}
                 () = tell_changes(of) => {}
-                () = super::together::tell_moves(moves) => {}
+                () = super::together::talk::tell_moves(moves) => {}
             }
         });
         Server { bound, token, guest, root, shared, task }

@@ -2,8 +2,8 @@
 //! (decision 086).
 //!
 //! ```text
-//! live -> wish -> Together -> Table of the file (text, version, seats) -> Outbox of everyone at it
-//! tell_moves (ten times a second) -> where people are
+//! live -> talk -> wish -> Together -> Table of the file (text, version, seats) -> Outbox of everyone at it
+//!         talk::tell_moves (ten times a second) -> where people are
 //! ```
 //!
 //! # Invariants
@@ -14,26 +14,22 @@
 //! The text of a table lives as long as someone edits at it. Nothing is written to the folder from here.
 
 mod table;
+pub(super) mod talk;
 mod wish;
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
 
-use g7_store::users::Role;
+use g7_model::{Said, say};
 use serde_json::{Value, json};
 
 use super::outbox::Outbox;
-use super::runs::letter;
-use super::shared::{Inner, Shared};
 use crate::who::Who;
 use table::{Person, Table};
 use wish::Wish;
 
 /// Greatest number of files at which people are at the same time.
 const TABLES: usize = 256;
-/// Time between two notices of where people are.
-const MOVES: Duration = Duration::from_millis(100);
 
 /// The tables of a server, by the path of their file.
 #[derive(Debug, Default)]
@@ -44,59 +40,6 @@ struct Tables {
     all: BTreeMap<String, Table>,
     /// The number of the next person.
     next: u64,
-}
-
-/// Does what a page asks for and puts the answer into its outbox; or says why that is impossible.
-pub(super) fn call(
-    shared: &Inner,
-    who: &Who,
-    outbox: &Arc<Outbox>,
-    id: u64,
-    message: &str,
-) -> Result<(), String> {
-    let wish: Wish = serde_json::from_str(message).map_err(|e| format!("this message means nothing: {e}"))?;
-    wish.judge()?;
-    let edits = who.role >= Role::Engineer && !shared.folder.is_read_only();
-    let mut tables = shared.together.lock();
-    let before = tables.list();
-    let answer = tables.answer(who, outbox, edits, wish)?;
-    outbox.put(letter(&json!({ "id": id, "answer": { "ok": answer } })));
-    tell_if_changed(shared, &tables, &before);
-    Ok(())
-}
-
-/// A page has gone: its places at all tables are free.
-pub(super) fn gone(shared: &Inner, outbox: &Arc<Outbox>) {
-    let mut tables = shared.together.lock();
-    let before = tables.list();
-    let files: Vec<String> = tables.all.keys().cloned().collect();
-    for file in files {
-        tables.leave(&file, outbox);
-    }
-    tell_if_changed(shared, &tables, &before);
-}
-
-/// Tells every page at which files people are, after a change of that.
-fn tell_if_changed(shared: &Inner, tables: &Tables, before: &Value) {
-    let now = tables.list();
-    if now != *before {
-        let text = letter(&json!({ "tables": now }));
-        shared.clients.all().iter().for_each(|client| client.put(text.clone()));
-    }
-}
-
-/// Tells the people at each table where the others are, as long as the server lives.
-pub(super) async fn tell_moves(shared: Shared) {
-    let mut tick = tokio::time::interval(MOVES);
-    tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
-    loop {
-        tick.tick().await;
-        for (file, table) in &mut shared.together.lock().all {
-            if let Some(moves) = table.moves() {
-                table.tell(None, &json!({ "together": { "file": file, "here": moves } }));
-            }
-        }
-    }
 }
 
 impl Together {
@@ -112,7 +55,7 @@ impl Tables {
         self.all.iter().map(row).collect()
     }
 
-    fn answer(&mut self, who: &Who, outbox: &Arc<Outbox>, edits: bool, wish: Wish) -> Result<Value, String> {
+    fn answer(&mut self, who: &Who, outbox: &Arc<Outbox>, edits: bool, wish: Wish) -> Result<Value, Said> {
         match wish {
             Wish::List => Ok(json!({ "tables": self.list() })),
             Wish::Join { file, name, text, edits: wants, key } => {
@@ -131,11 +74,11 @@ impl Tables {
             }
             Wish::Change { file, version, splices, key } => {
                 if !edits {
-                    return Err("only who may write files may change this one".to_owned());
+                    return Err(say!("only who may write files may change this one"));
                 }
                 let table = self.table(&file)?;
                 let Some(by) = table.editor(outbox) else {
-                    return Err("only who edits a file together with others may change it".to_owned());
+                    return Err(say!("only who edits a file together with others may change it"));
                 };
                 if version != table.version() {
                     return Ok(json!({ "behind": true }));
@@ -159,20 +102,14 @@ impl Tables {
         }
     }
 
-    fn table(&mut self, file: &str) -> Result<&mut Table, String> {
-        self.all.get_mut(file).ok_or_else(|| "nobody is at this file together with others".to_owned())
+    fn table(&mut self, file: &str) -> Result<&mut Table, Said> {
+        self.all.get_mut(file).ok_or_else(|| say!("nobody is at this file together with others"))
     }
 
-    fn join(
-        &mut self,
-        file: &str,
-        person: Person,
-        outbox: &Arc<Outbox>,
-        text: &str,
-    ) -> Result<Value, String> {
+    fn join(&mut self, file: &str, person: Person, outbox: &Arc<Outbox>, text: &str) -> Result<Value, Said> {
         self.leave(file, outbox);
         if !self.all.contains_key(file) && self.all.len() >= TABLES {
-            return Err(format!("people are at {TABLES} files already: leave one"));
+            return Err(say!("people are at {TABLES} files already: leave one"));
         }
         let table = self.all.entry(file.to_owned()).or_default();
         let (id, edits) = (person.id, person.edits);

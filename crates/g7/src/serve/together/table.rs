@@ -8,6 +8,7 @@
 use std::collections::VecDeque;
 use std::sync::{Arc, Weak};
 
+use g7_model::{Said, say};
 use serde::Serialize;
 use serde_json::{Value, json};
 
@@ -113,8 +114,8 @@ impl Table {
     }
 
     /// Changes the text; returns the new version.
-    pub(super) fn change(&mut self, splices: &[Splice], key: String) -> Result<u64, String> {
-        let misfit = || "these places are none of the text".to_owned();
+    pub(super) fn change(&mut self, splices: &[Splice], key: String) -> Result<u64, Said> {
+        let misfit = || say!("these places are none of the text");
         let text = self.text.as_ref().ok_or_else(misfit)?;
         let added: usize = splices.iter().map(|s| s.insert.len()).sum();
         let mut next = Vec::with_capacity(text.len() + added);
@@ -129,7 +130,7 @@ impl Table {
         }
         next.extend_from_slice(text.get(at..).ok_or_else(misfit)?);
         if next.len() > LONGEST {
-            return Err(format!("a text that several people edit has at most {LONGEST} letters"));
+            return Err(say!("a text that several people edit has at most {LONGEST} letters"));
         }
         if char::decode_utf16(next.iter().copied()).any(|letter| letter.is_err()) {
             return Err(misfit());

@@ -1,5 +1,6 @@
 //! The messages of pages about files that several people edit at once, and their bounds.
 
+use g7_model::{Said, say};
 use serde::{Deserialize, Serialize};
 
 /// Greatest length of the path of a file, of a name and of an id, in bytes.
@@ -64,7 +65,7 @@ pub(super) struct Here {
 
 impl Wish {
     /// Refuses what is too long.
-    pub(super) fn judge(&self) -> Result<(), String> {
+    pub(super) fn judge(&self) -> Result<(), Said> {
         let fits = match self {
             Wish::List => true,
             Wish::Join { file, name, key, .. } => {
@@ -78,7 +79,7 @@ impl Wish {
             Wish::Here { file, here } => file.len() <= PATH && here.fits(),
             Wish::Saved { file, tag } => file.len() <= PATH && tag.len() <= NAME,
         };
-        if fits { Ok(()) } else { Err("this message is too long for what it means".to_owned()) }
+        if fits { Ok(()) } else { Err(say!("this message is too long for what it means")) }
     }
 }
 
