@@ -70,7 +70,10 @@ const RARE: Message[] = [
   { do: 'forms' },
   ...['c', 'rust', 'st', 'plcopen', 'sfc', 'mermaid', 'svg', 'nothing'].map((to) => ({ do: 'export', file: 'a.g7', to })),
   { do: 'prove', file: 'a.g7', states: 1000, mib: 64 },
+  { do: 'test', file: 'a.g7' },
   { do: 'test_why', file: 'a.g7', name: 'goes on' },
+  { do: 'logic', file: 'a.g7', id: 'G/t/0', tongue: 'il' },
+  { do: 'logic', file: 'a.g7', id: 'G/t/0', tongue: 'ld' },
   { do: 'prove_ways', file: 'a.g7', hash: 'of no text', question: 0, run: [] },
   { do: 'compare', files: ['a.g7', 'a.g7'], profiles: [null, 'iec61131'], states: 1000, mib: 64 },
   { do: 'sheets', file: 'a.g7', paper: 'a4', charts: ['G'], dossier: true, head: { title: '', author: '', company: '', revision: '', date: '' }, pictures: [] },
@@ -95,7 +98,7 @@ test('what the first module does not contain is answered as by the whole program
   assert.equal(whole({ do: 'text', file: 'a.g7' }).ok, undefined, 'what was lent is forgotten');
 });
 
-test('the first module shows, edits, tests and runs by itself', () => {
+test('the first module shows, edits and runs by itself', () => {
   const messages: Message[] = [
     { do: 'open', file: 'a.g7', text: CHART },
     { do: 'drawing', file: 'a.g7', chart: 'G' },
@@ -108,8 +111,7 @@ test('the first module shows, edits, tests and runs by itself', () => {
     { do: 'tokens', file: 'a.g7' },
     { do: 'symbols', file: 'a.g7' },
     { do: 'search', file: 'a.g7', text: 'M' },
-    { do: 'logic', file: 'a.g7', id: 'G/t/0' },
-    { do: 'test', file: 'a.g7' },
+    { do: 'logic', file: 'a.g7', id: 'G/t/0', tongue: 'st' },
     { do: 'run_start', file: 'a.g7', run: 'r', moves: [{ wait_ns: 0, set: [[0, '1']] }] },
     { do: 'run_advance', run: 'r', ms: 100 },
     { do: 'run_export', run: 'r', as: 'vcd', signals: [0] },

@@ -31,8 +31,10 @@ pub struct Piece {
     pub part: Part,
     /// The number of the action in its step.
     pub index: Option<usize>,
-    /// The piece in each of the languages.
-    pub forms: Vec<Form>,
+    /// The text; absent if the language cannot express the piece.
+    pub text: Option<String>,
+    /// The drawing as SVG, for Ladder.
+    pub picture: Option<String>,
 }
 
 /// A part of a symbol that contains logic.
@@ -48,25 +50,43 @@ pub enum Part {
     Body,
 }
 
-/// A piece of logic in one language.
-#[derive(Debug)]
-pub struct Form {
-    /// The language.
-    pub tongue: Tongue,
-    /// The text; absent if the language cannot express the piece.
-    pub text: Option<String>,
-    /// The drawing as SVG, for Ladder.
-    pub picture: Option<String>,
+/// The logic of a transition, of an action, or of all actions of a step, in one of the languages.
+pub fn logic(file: &File, id: &str, tongue: Tongue) -> Result<Vec<Piece>, Said> {
+    match tongue {
+        Tongue::St => structured(file, id),
+        Tongue::Il => pieces(file, id, &|e| (Some(il::show_expr(e)), None), &|s| (il::show(s), None)),
+        Tongue::Ld => {
+            let symbols = g7_compile::compile(file.source.whole()).0.map(|c| c.symbols);
+            let boolean = |e: &Expr| is_boolean(e, symbols.as_ref());
+            let drawn = |text: Option<String>| {
+                let picture = text.as_deref().and_then(picture);
+                (text, picture)
+            };
+            let condition = |e: &Expr| drawn(Some(ladder::show_expr(e)));
+            pieces(file, id, &condition, &|s| drawn(ladder::show(s, &boolean)))
+        }
+    }
 }
 
-/// The logic of a transition, of an action, or of all actions of a step.
-pub fn logic(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
+/// The same in Structured Text, for whoever has not the other languages.
+pub fn structured(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
+    pieces(file, id, &|e| (Some(print_expr(e)), None), &|s| (Some(print_statements(s)), None))
+}
+
+/// A text, and its drawing.
+type Written = (Option<String>, Option<String>);
+
+/// The pieces of a symbol, written by these functions.
+fn pieces(
+    file: &File,
+    id: &str,
+    condition: &dyn Fn(&Expr) -> Written,
+    body: &dyn Fn(&[Stmt]) -> Written,
+) -> Result<Vec<Piece>, Said> {
     let document = &file.source.document;
     let (_, thing) =
         ids::things(document).find(|(_, t)| t.id() == id).ok_or_else(|| say!("there is no `{id}`"))?;
-    let symbols = g7_compile::compile(file.source.whole()).0.map(|c| c.symbols);
-    let boolean = |e: &Expr| is_boolean(e, symbols.as_ref());
-    let show = Show { document, boolean: &boolean };
+    let show = Show { document, condition, body };
     Ok(match thing {
         Thing::Transition(chart, n) => match chart.transitions().nth(n) {
             Some(t) => {
@@ -131,7 +151,8 @@ fn is_boolean(e: &Expr, symbols: Option<&Symbols>) -> bool {
 
 struct Show<'a> {
     document: &'a Document,
-    boolean: &'a dyn Fn(&Expr) -> bool,
+    condition: &'a dyn Fn(&Expr) -> Written,
+    body: &'a dyn Fn(&[Stmt]) -> Written,
 }
 
 impl Show<'_> {
@@ -177,22 +198,13 @@ impl Show<'_> {
     }
 
     fn condition(&self, part: Part, index: Option<usize>, e: &Expr) -> Piece {
-        let st = Some(print_expr(e));
-        self.piece(part, index, [st, Some(il::show_expr(e)), Some(ladder::show_expr(e))])
+        let (text, picture) = (self.condition)(e);
+        Piece { part, index, text, picture }
     }
 
     fn body(&self, index: Option<usize>, statements: &[Stmt]) -> Piece {
-        let st = Some(print_statements(statements));
-        let ld = ladder::show(statements, self.boolean);
-        self.piece(Part::Body, index, [st, il::show(statements), ld])
-    }
-
-    fn piece(&self, part: Part, index: Option<usize>, texts: [Option<String>; 3]) -> Piece {
-        let forms = [Tongue::St, Tongue::Il, Tongue::Ld].into_iter().zip(texts).map(|(tongue, text)| {
-            let picture = text.as_deref().filter(|_| tongue == Tongue::Ld).and_then(picture);
-            Form { tongue, text, picture }
-        });
-        Piece { part, index, forms: forms.collect() }
+        let (text, picture) = (self.body)(statements);
+        Piece { part: Part::Body, index, text, picture }
     }
 }
 

@@ -5,6 +5,7 @@ use g7_ide::{File, completion, hover, logic, references, search, tables, tokens}
 use g7_model::{Language, Qualifier, Said, VarKind, words};
 use serde::{Deserialize, Serialize};
 
+use crate::between::WHOLE;
 use crate::places::units;
 
 /// The possible words, and the place at which the word begins.
@@ -182,7 +183,7 @@ pub(crate) fn tables(file: &File) -> Tables {
 }
 
 /// A language of controllers.
-#[derive(Clone, Copy, Debug, Deserialize, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS))]
 #[serde(rename_all = "lowercase")]
 pub(crate) enum Tongue {
@@ -202,39 +203,24 @@ enum Part {
     Body,
 }
 
-/// A piece of logic: the part of the symbol that it is, the number of the action in its step, and its
-/// text in each language.
+/// A piece of logic: the part of the symbol that it is, the number of the action in its step, and its text in the language
+/// that was asked for.
 #[derive(Debug, Serialize)]
 #[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicPiece", optional_fields))]
 pub(crate) struct Piece {
     part: Part,
     #[serde(skip_serializing_if = "Option::is_none")]
     index: Option<usize>,
-    forms: Vec<Form>,
-}
-
-#[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicForm"))]
-struct Form {
-    tongue: Tongue,
     /// Null if the language cannot express it.
+    #[cfg_attr(feature = "types", ts(optional = false))]
     text: Option<String>,
     /// Ladder has one.
     #[serde(skip_serializing_if = "Option::is_none")]
-    #[cfg_attr(feature = "types", ts(optional))]
     picture: Option<String>,
 }
 
-pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
-    let form = |f: logic::Form| Form {
-        tongue: match f.tongue {
-            logic::Tongue::St => Tongue::St,
-            logic::Tongue::Il => Tongue::Il,
-            logic::Tongue::Ld => Tongue::Ld,
-        },
-        text: f.text,
-        picture: f.picture,
-    };
+/// The logic of a symbol. The first module has Structured Text alone.
+pub(crate) fn logic(file: &File, id: &str, tongue: Tongue) -> Result<Vec<Piece>, Said> {
     let piece = |p: logic::Piece| Piece {
         part: match p.part {
             logic::Part::Receptivity => Part::Receptivity,
@@ -243,18 +229,25 @@ pub(crate) fn logic(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
             logic::Part::Body => Part::Body,
         },
         index: p.index,
-        forms: p.forms.into_iter().map(form).collect(),
+        text: p.text,
+        picture: p.picture,
     };
-    Ok(logic::logic(file, id)?.into_iter().map(piece).collect())
+    let found = if WHOLE { logic::logic(file, id, tongue.into())? } else { logic::structured(file, id)? };
+    Ok(found.into_iter().map(piece).collect())
+}
+
+impl From<Tongue> for logic::Tongue {
+    fn from(tongue: Tongue) -> logic::Tongue {
+        match tongue {
+            Tongue::St => logic::Tongue::St,
+            Tongue::Il => logic::Tongue::Il,
+            Tongue::Ld => logic::Tongue::Ld,
+        }
+    }
 }
 
 pub(crate) fn logic_read(tongue: Tongue, text: &str) -> Result<String, Said> {
-    let tongue = match tongue {
-        Tongue::St => logic::Tongue::St,
-        Tongue::Il => logic::Tongue::Il,
-        Tongue::Ld => logic::Tongue::Ld,
-    };
-    logic::read(tongue, text)
+    logic::read(tongue.into(), text)
 }
 
 /// A qualifier of actions.

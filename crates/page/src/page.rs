@@ -364,8 +364,11 @@ impl Answers for Page {
         picture::picture(self.file(&file)?, &plant)
     }
 
-    fn logic(&mut self, file: String, id: String) -> Result<Vec<Piece>, Said> {
-        language::logic(self.file(&file)?, &id)
+    fn logic(&mut self, file: String, id: String, tongue: Tongue) -> Result<Vec<Piece>, Said> {
+        if !WHOLE && tongue != Tongue::St {
+            return between::not_here();
+        }
+        language::logic(self.file(&file)?, &id, tongue)
     }
 
     fn logic_read(&mut self, tongue: Tongue, text: String) -> Result<Text, Said> {
@@ -380,6 +383,9 @@ impl Answers for Page {
     }
 
     fn test(&mut self, file: String, name: Option<String>) -> Result<testing::Report, Said> {
+        if !WHOLE {
+            return between::not_here();
+        }
         testing::test(self.file(&file)?, name.as_deref())
     }
 

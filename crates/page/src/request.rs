@@ -147,8 +147,8 @@ requests! {
     /// The picture of a plant, and what can be bound in it.
     fn plant_picture(file: String, plant: String) -> PlantPicture;
 
-    /// The logic of a symbol in the languages of controllers.
-    fn logic(file: String, id: String) -> Vec<Piece>;
+    /// The logic of a symbol in one of the languages of controllers.
+    fn logic(file: String, id: String, tongue: Tongue) -> Vec<Piece>;
 
     /// Converts logic in one of these languages to an expression of the text.
     fn logic_read(tongue: Tongue, text: String) -> Text;
@@ -326,9 +326,11 @@ impl Request {
     pub(crate) fn files(&self) -> Vec<String> {
         match self {
             Request::export(export { file, .. })
+            | Request::logic(logic { file, .. })
             | Request::sheets(sheets { file, .. })
             | Request::plant_picture(plant_picture { file, .. })
             | Request::prove(prove { file, .. })
+            | Request::test(test { file, .. })
             | Request::test_why(test_why { file, .. })
             | Request::prove_ways(prove_ways { file, .. }) => vec![file.clone()],
             Request::compare(compare { wish }) => wish.files.to_vec(),
