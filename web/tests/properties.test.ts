@@ -103,7 +103,7 @@ test('a receptivity is seen and written in each language of controllers', async 
   await logic.getByRole('button', { name: 'LD' }).click();
   await logic.locator('svg text', { hasText: /^a$/ }).waitFor();
   await logic.getByRole('button', { name: 'IL' }).click();
-  const list = logic.getByRole('textbox');
+  const list = logic.getByRole('textbox', { name: 'Instruction List' });
   assert.equal((await list.inputValue()).trim().replace(/\s+/g, ' '), 'LD a');
   await list.fill('LD a\nAND )');
   await list.blur();
@@ -112,8 +112,9 @@ test('a receptivity is seen and written in each language of controllers', async 
   await list.blur();
   await says(page, /0 -> 1 when not a or b/);
   await logic.getByRole('button', { name: 'LD' }).click();
-  await logic.getByRole('textbox').fill('--{ [a] | [/b] }');
-  await logic.getByRole('textbox').blur();
+  const rungs = logic.getByRole('textbox', { name: 'Ladder' });
+  await rungs.fill('--{ [a] | [/b] }');
+  await rungs.blur();
   await says(page, /0 -> 1 when a or not b/);
   assert.deepEqual(await axe(page), []);
   assert.deepEqual(page.errors, []);
