@@ -706,20 +706,19 @@ export type LinkEnd = 'from' | 'to';
 /** The forms in which a link can be drawn. */
 export type LinkForm = 'line' | 'jump';
 
-export type LogicForm = {
-  tongue: Tongue;
+/** The part of a symbol that a piece of logic is. */
+export type LogicPart = 'receptivity' | 'condition' | 'event' | 'body';
+
+/** A piece of logic: the part of the symbol that it is, the number of the action in its step, and its text in the language
+ * that was asked for. */
+export type LogicPiece = {
+  part: LogicPart;
+  index?: number;
   /** Null if the language cannot express it. */
   text: string | null;
   /** Ladder has one. */
   picture?: string;
 };
-
-/** The part of a symbol that a piece of logic is. */
-export type LogicPart = 'receptivity' | 'condition' | 'event' | 'body';
-
-/** A piece of logic: the part of the symbol that it is, the number of the action in its step, and its
- * text in each language. */
-export type LogicPiece = { part: LogicPart; index?: number; forms: Array<LogicForm> };
 
 /** The overview of a file. */
 export type Look = {
@@ -809,7 +808,7 @@ export type PictureName = {
   name: string;
   role: NameRole;
   type: NameType;
-  /** What a binding is given: the name, or what the plant drives an input with. Empty if a picture cannot show it. */
+  /** The value of a binding to it: the name, or what the plant drives an input with. Empty if a picture cannot show it. */
   value: string;
   /** True if a part of the picture can turn it. */
   hand: boolean;
@@ -1203,8 +1202,8 @@ export interface Requests {
   speak: { language: string; words?: string | null };
   look: { file: string };
   text: { file: string };
-  /** Changes the text as it is typed. A unit is undone alone. */
-  splice: { file: string; splices: Array<Splice>; unit?: boolean, others?: boolean };
+  /** Changes the text as it is typed. A unit is undone alone; a change of others is not undone here. */
+  splice: { file: string; splices: Array<Splice>; unit?: boolean; others?: boolean };
   /** Executes a gesture. */
   edit: { file: string; gesture: Gesture };
   /** The effect that a gesture would have. */
@@ -1257,8 +1256,8 @@ export interface Requests {
   };
   /** The picture of a plant, and what can be bound in it. */
   plant_picture: { file: string; plant: string };
-  /** The logic of a symbol in the languages of controllers. */
-  logic: { file: string; id: string };
+  /** The logic of a symbol in one of the languages of controllers. */
+  logic: { file: string; id: string; tongue: Tongue };
   /** Converts logic in one of these languages to an expression of the text. */
   logic_read: { tongue: Tongue; text: string };
   /** The style sheet of the drawings. */
