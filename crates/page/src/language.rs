@@ -5,7 +5,6 @@ use g7_ide::{File, completion, hover, logic, references, search, tables, tokens}
 use g7_model::{Language, Qualifier, Said, VarKind, words};
 use serde::{Deserialize, Serialize};
 
-use crate::between::WHOLE;
 use crate::places::units;
 
 /// The possible words, and the place at which the word begins.
@@ -206,21 +205,31 @@ enum Part {
 /// A piece of logic: the part of the symbol that it is, the number of the action in its step, and its text in the language
 /// that was asked for.
 #[derive(Debug, Serialize)]
-#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicPiece", optional_fields))]
+#[cfg_attr(feature = "types", derive(ts_rs::TS), ts(rename = "LogicPiece"))]
 pub(crate) struct Piece {
     part: Part,
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
     index: Option<usize>,
     /// Null if the language cannot express it.
-    #[cfg_attr(feature = "types", ts(optional = false))]
     text: Option<String>,
     /// Ladder has one.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[cfg_attr(feature = "types", ts(optional))]
     picture: Option<String>,
 }
 
-/// The logic of a symbol. The first module has Structured Text alone.
+/// The logic of a symbol in one of the languages.
 pub(crate) fn logic(file: &File, id: &str, tongue: Tongue) -> Result<Vec<Piece>, Said> {
+    Ok(pieces(logic::logic(file, id, tongue.into())?))
+}
+
+/// The same in Structured Text: the others are not in the first module.
+pub(crate) fn structured(file: &File, id: &str) -> Result<Vec<Piece>, Said> {
+    Ok(pieces(logic::structured(file, id)?))
+}
+
+fn pieces(found: Vec<logic::Piece>) -> Vec<Piece> {
     let piece = |p: logic::Piece| Piece {
         part: match p.part {
             logic::Part::Receptivity => Part::Receptivity,
@@ -232,8 +241,7 @@ pub(crate) fn logic(file: &File, id: &str, tongue: Tongue) -> Result<Vec<Piece>,
         text: p.text,
         picture: p.picture,
     };
-    let found = if WHOLE { logic::logic(file, id, tongue.into())? } else { logic::structured(file, id)? };
-    Ok(found.into_iter().map(piece).collect())
+    found.into_iter().map(piece).collect()
 }
 
 impl From<Tongue> for logic::Tongue {

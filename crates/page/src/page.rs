@@ -365,10 +365,13 @@ impl Answers for Page {
     }
 
     fn logic(&mut self, file: String, id: String, tongue: Tongue) -> Result<Vec<Piece>, Said> {
-        if !WHOLE && tongue != Tongue::St {
-            return between::not_here();
+        if WHOLE {
+            return language::logic(self.file(&file)?, &id, tongue);
         }
-        language::logic(self.file(&file)?, &id, tongue)
+        if tongue == Tongue::St {
+            return language::structured(self.file(&file)?, &id);
+        }
+        between::not_here()
     }
 
     fn logic_read(&mut self, tongue: Tongue, text: String) -> Result<Text, Said> {
