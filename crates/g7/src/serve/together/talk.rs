@@ -23,7 +23,7 @@ use crate::who::Who;
 const MOVES: Duration = Duration::from_millis(100);
 
 /// Does what a page asks for and puts the answer into its outbox; or says why that is impossible.
-pub(in super::super) fn call(
+pub(crate) fn call(
     shared: &Inner,
     who: &Who,
     outbox: &Arc<Outbox>,
@@ -43,7 +43,7 @@ pub(in super::super) fn call(
 }
 
 /// A page has gone: its places at all tables are free.
-pub(in super::super) fn gone(shared: &Inner, outbox: &Arc<Outbox>) {
+pub(crate) fn gone(shared: &Inner, outbox: &Arc<Outbox>) {
     let mut tables = shared.together.lock();
     let before = tables.list();
     let files: Vec<String> = tables.all.keys().cloned().collect();
@@ -63,7 +63,7 @@ fn tell_if_changed(shared: &Inner, tables: &Tables, before: &Value) {
 }
 
 /// Tells the people at each table where the others are, as long as the server lives.
-pub(in super::super) async fn tell_moves(shared: Shared) {
+pub(crate) async fn tell_moves(shared: Shared) {
     let mut tick = tokio::time::interval(MOVES);
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
     loop {
