@@ -1,5 +1,5 @@
-//! A class at one server: fifty pages that come, work together, drive shared runs and go, for seconds in each test and for
-//! an hour with `make page-soak`. The memory of the server must not grow with time.
+//! A class at one server: pages that come, work together, drive shared runs and go; a few for seconds in each test, and fifty
+//! for an hour with `make page-soak`. The memory of the server must not grow with time.
 #![cfg(target_os = "linux")]
 
 use std::net::TcpStream;
@@ -13,8 +13,9 @@ use tungstenite::{Message, WebSocket};
 use crate::common::{Folder, PINGPONG};
 use crate::serve::Served;
 
-/// Pages at the same time.
+/// Pages at the same time: in the hour, and beside the other tests, whose times they must not disturb.
 const PAGES: u64 = 50;
+const FEW: u64 = 8;
 /// Time between two wishes of a page.
 const PAUSE: Duration = Duration::from_millis(40);
 /// Wishes of a page from its coming to its going.
@@ -114,7 +115,8 @@ fn comes_and_goes(server: &Served, seat: u64, over: &AtomicBool, wishes: &Atomic
 #[test]
 fn a_class_takes_no_more_memory_as_time_goes_on() {
     let minutes = std::env::var("G7_SOAK_MINUTES").ok().map(|text| text.parse::<u64>().expect("minutes"));
-    let time = minutes.map_or(Duration::from_secs(12), |minutes| Duration::from_secs(60 * minutes));
+    let time = minutes.map_or(Duration::from_secs(8), |minutes| Duration::from_secs(60 * minutes));
+    let pages = if minutes.is_some() { PAGES } else { FEW };
     let folder = Folder::new();
     for number in 0..FILES {
         folder.write(&format!("chart{number}.g7"), PINGPONG);
@@ -124,7 +126,7 @@ fn a_class_takes_no_more_memory_as_time_goes_on() {
     let mut clock = WallClock::default();
     let mut taken = Vec::new();
     std::thread::scope(|scope| {
-        for seat in 0..PAGES {
+        for seat in 0..pages {
             let (server, over, wishes) = (&server, &over, &wishes);
             scope.spawn(move || comes_and_goes(server, seat, over, wishes));
         }
@@ -139,7 +141,7 @@ fn a_class_takes_no_more_memory_as_time_goes_on() {
         }
         over.store(true, Ordering::Relaxed);
     });
-    assert!(wishes.load(Ordering::Relaxed) > PAGES, "they did something");
+    assert!(wishes.load(Ordering::Relaxed) > pages, "they did something");
     // The first third is the beginning: pages, files and runs come for the first time.
     let most =
         |from: usize, to: usize| taken[taken.len() * from / 3..taken.len() * to / 3].iter().max().copied();
