@@ -140,7 +140,7 @@ impl Flow {
         self.heading(0, title);
     }
 
-    /// Writes lines of the chart's text; the blanks at their beginning stay.
+    /// Prints lines of the chart's text with their indentation.
     pub(crate) fn written<'t>(&mut self, lines: impl IntoIterator<Item = &'t str>) {
         for line in lines {
             let text = line.trim_start();
@@ -196,7 +196,8 @@ impl Flow {
         self.y
     }
 
-    /// Puts an SVG file at the present height, and goes on below it. Its size may have any unit: only the proportions count.
+    /// Draws an SVG file at the present height of the sheet; what follows stands below it. The unit of its size does not
+    /// matter, because only the proportions are used.
     pub(crate) fn place(&mut self, svg: &[u8], [w, h]: [f64; 2]) {
         let most = f64::from((self.inside.h - 10 * MM).min(110 * MM));
         let scale = (f64::from(self.inside.w) / w.max(1.0)).min(most / h.max(1.0)).min(20.0);

@@ -70,7 +70,7 @@ pub fn opened(document: &Document, drawing: &Drawing, square: Rect, free: Point)
     let mut frame = Picture::default();
     frame.rect("g7-frame", area.x, area.y, area.w, area.h);
     let middle = square.y + square.h / 2;
-    // The line enters the frame beside its title if the step stands above or below the frame.
+    // If the step stands above or below the frame, the line meets the frame near its upper or lower corner.
     let entry = middle.clamp(area.y + ROUND, area.y + area.h - ROUND);
     let bend = area.x - BETWEEN / 2;
     let line = [(square.x + square.w, middle), (bend, middle), (bend, entry), (area.x, entry)];

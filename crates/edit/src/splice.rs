@@ -55,9 +55,9 @@ pub(crate) fn inverse(text: &str, splices: &[Splice]) -> Option<Vec<Splice>> {
     Some(back)
 }
 
-/// The splices with the same effect on a text that `others` have changed before: both lists are for one text. What
-/// both delete is deleted once, and what the others insert stays. Where both insert at one place, the text of these splices stands
-/// before that of the others if it is `first`.
+/// Moves splices over those of others. Both lists are made for the same text; the result is for the text that the others
+/// have already changed. A part that both delete is deleted once. The text that the others insert stays. If both insert
+/// at one place, `first` tells if these splices insert before the others.
 ///
 /// For lists `a` and `b` of one text, `a` and then `over(b, a, false)` gives the same text as `b` and then
 /// `over(a, b, true)`.

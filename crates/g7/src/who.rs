@@ -34,6 +34,11 @@ impl Who {
         Who { name: String::new(), role: Role::Admin, from, session: None, guest: false }
     }
 
+    /// A user of the server.
+    pub(crate) fn user(name: String, role: Role, from: String, session: Option<SessionHash>) -> Who {
+        Who { name, role, from, session, guest: false }
+    }
+
     /// Whoever has the address for guests: looks at everything and changes nothing. No user has this name.
     pub(crate) fn guest(from: String) -> Who {
         Who { name: "(guest)".to_owned(), role: Role::Viewer, from, session: None, guest: true }

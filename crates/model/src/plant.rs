@@ -15,6 +15,13 @@ pub struct Plant {
     pub at: Place,
 }
 
+impl Plant {
+    /// The picture, if there is one.
+    pub fn view(&self) -> Option<&View> {
+        self.items.iter().find_map(|item| if let PlantItem::View(view) = item { Some(view) } else { None })
+    }
+}
+
 /// An item of a plant.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum PlantItem {

@@ -69,7 +69,7 @@ pub(crate) fn picture(file: &File, plant: &str) -> Result<PlantPicture, Said> {
     });
     let plant = own.ok_or_else(|| say!("this file has no plant `{plant}`"))?;
     let words = |at: Span| readable.words(at);
-    let view = plant.items.iter().find_map(|i| if let PlantItem::View(v) = i { Some(v) } else { None });
+    let view = plant.view();
     let bound = |b: &g7_model::Binding| Bound {
         element: b.element.text.to_string(),
         attribute: b.attribute.text.to_string(),

@@ -35,7 +35,7 @@ type Doing =
 
 /** True if a symbol can be dragged; links only follow their symbols. */
 function held(item: Item | null): boolean {
-  // A chart that is opened beside another stands where its step is.
+  // A chart that is opened beside another has its place from the step that opens it: it is not dragged.
   if (item?.part === 'title') return editor.chart === SHEET;
   return item !== null && ['step', 'transition', 'action', 'comment'].includes(item.part);
 }

@@ -42,7 +42,7 @@ export async function begin(): Promise<void> {
   if (!embedded) await recover();
   // Behind that, because unsaved work may have the name of a file in the link, and stays.
   await shell.try(openAddress);
-  await shell.try(() => together.begin());
+  void shell.try(() => together.begin());
   shell.ready = true;
   addEventListener('hashchange', () => void shell.try(openAddress));
   if (!embedded) await saveWaiting();

@@ -47,6 +47,11 @@ export function apply(text: string, splices: Splice[]): string {
   return out + text.slice(at);
 }
 
+/** Two changes of one text, each as a change of the text that the other one makes. At one place `theirs` comes first. */
+export function crossed(theirs: ChangeSet, mine: ChangeSet): [theirs: ChangeSet, mine: ChangeSet] {
+  return [theirs.map(mine, true), mine.map(theirs)];
+}
+
 /** The change that makes one text of another: what differs, as one splice. */
 export function between(now: string, text: string): Splice[] {
   const most = Math.min(now.length, text.length);
@@ -219,11 +224,7 @@ export class OpenFile {
     this.#open();
     const edited = await page.call(message);
     let theirs = ChangeSet.of(asSpecs(edited.splices), this.#typed[0]?.changes.length ?? this.text.length);
-    for (const mine of this.#typed) {
-      const after = theirs.map(mine.changes, true);
-      mine.changes = mine.changes.map(theirs);
-      theirs = after;
-    }
+    for (const mine of this.#typed) [theirs, mine.changes] = crossed(theirs, mine.changes);
     const splices = asSplices(theirs);
     this.text = apply(this.text, splices);
     this.look = edited;

@@ -1,4 +1,4 @@
-// The carets and selections of the others at the file, with their names; and this page's own, told to them.
+// Shows the carets and selections of the other people at the file, with their names, and tells them this page's own.
 import { StateEffect, StateField, type Range } from '@codemirror/state';
 import { Decoration, EditorView, WidgetType, type DecorationSet } from '@codemirror/view';
 import type { OpenFile } from '../lib/files.svelte';

@@ -1,8 +1,8 @@
 // Keeps the text view and the open file equal: typed changes go to the file, other changes come
 // back as splices. Undo belongs to the file.
-import { Annotation, Transaction, type ChangeSet, type Text } from '@codemirror/state';
+import { Annotation, Transaction } from '@codemirror/state';
 import { EditorView, type ViewUpdate } from '@codemirror/view';
-import type { OpenFile } from '../lib/files.svelte';
+import { asSpecs, asSplices, type OpenFile } from '../lib/files.svelte';
 import type { Splice } from '../lib/protocol';
 import { shell } from '../lib/shell.svelte';
 
@@ -13,12 +13,6 @@ export const asUnit = Annotation.define<boolean>();
 
 const UNITS = ['input.paste', 'input.drop', 'input.complete', 'delete.cut', 'move', 'input.replace'];
 
-function splices(changes: ChangeSet): Splice[] {
-  const found: Splice[] = [];
-  changes.iterChanges((from, to, _a, _b, insert: Text) => found.push({ from, to, insert: insert.toString() }), true);
-  return found;
-}
-
 export function sync(file: OpenFile) {
   let sending = false;
   const send = EditorView.updateListener.of((update: ViewUpdate) => {
@@ -26,7 +20,7 @@ export function sync(file: OpenFile) {
       if (!transaction.docChanged || transaction.annotation(fromFile)) continue;
       const unit = transaction.annotation(asUnit) === true || UNITS.some((event) => transaction.isUserEvent(event));
       sending = true;
-      void shell.try(() => file.type(splices(transaction.changes), unit));
+      void shell.try(() => file.type(asSplices(transaction.changes), unit));
       sending = false;
     }
   });
@@ -35,7 +29,7 @@ export function sync(file: OpenFile) {
     file.listen(({ splices: changes, origin }) => {
       if (sending) return;
       view.dispatch({
-        changes: changes.map(({ from, to, insert }) => ({ from, to, insert })),
+        changes: asSpecs(changes),
         annotations: [fromFile.of(true), Transaction.addToHistory.of(false)],
         ...(origin === 'history' && changes[0] && view.hasFocus ? { selection: { anchor: after(changes) }, scrollIntoView: true } : {}),
       });

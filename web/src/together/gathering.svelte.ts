@@ -4,7 +4,7 @@
 // a time; what is typed meanwhile waits, and a change of somebody else is moved over what is not confirmed yet. All pages then have the
 // same text, whatever came first.
 import { ChangeSet } from '@codemirror/state';
-import { apply, asSpecs, asSplices, between, type OpenFile, type TextChange } from '../lib/files.svelte';
+import { apply, asSpecs, asSplices, between, crossed, type OpenFile, type TextChange } from '../lib/files.svelte';
 import { here } from '../lib/here';
 import type { Splice } from '../lib/protocol';
 import { Gone, server, type Here, type Person } from '../lib/server';
@@ -106,16 +106,8 @@ export class Gathering {
     if (this.#confirmed === null || splices.length === 0) return;
     let theirs = ChangeSet.of(asSpecs(splices), this.#confirmed.length);
     this.#confirmed = apply(this.#confirmed, splices);
-    if (this.#sent) {
-      const after = theirs.map(this.#sent.changes, true);
-      this.#sent.changes = this.#sent.changes.map(theirs);
-      theirs = after;
-    }
-    if (this.#waiting) {
-      const after = theirs.map(this.#waiting, true);
-      this.#waiting = this.#waiting.map(theirs);
-      theirs = after;
-    }
+    if (this.#sent) [theirs, this.#sent.changes] = crossed(theirs, this.#sent.changes);
+    if (this.#waiting) [theirs, this.#waiting] = crossed(theirs, this.#waiting);
     await this.file.others(asSplices(theirs));
   }
 

@@ -12,7 +12,7 @@ use crate::random::{chart_of, only};
 /// A selection of two sequences and a way back from each, a fork and a join.
 const LOOPS: &str = "initial step 1 step 2 step 3 step 4 step 5\n\
     1 -> (2, 3) when TRUE (2, 3) -> 4 when TRUE 4 -> 5 when TRUE 5 -> 1 when TRUE 4 -> 1 when FALSE\n";
-/// Two sequences, and a link from one into the other, which the layout breaks off.
+/// Two sequences, and a link from one into the other. The layout draws this link as a jump.
 const ACROSS: &str = "initial step 1 step 2 step 3 step 4 step 5 step 6 step 7\n\
     1 -> 2 when TRUE 1 -> 3 when TRUE 2 -> 4 when TRUE 4 -> 6 when TRUE\n\
     3 -> 5 when TRUE 5 -> 6 when TRUE 6 -> 7 when TRUE 3 -> 4 when FALSE 7 -> 1 when TRUE\n";

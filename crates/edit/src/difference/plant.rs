@@ -1,6 +1,6 @@
 //! Changes the picture of a plant. No gesture changes anything else of a plant.
 
-use g7_model::{Binding, Expr, ExprKind, Literal, Plant, PlantItem, Span, View};
+use g7_model::{Binding, Expr, ExprKind, Literal, Plant, Span, View};
 use g7_syntax::{print_expr, show_name};
 
 use super::item::expr_text;
@@ -12,15 +12,11 @@ use crate::gestures::binding_at;
 /// Writes the picture of a plant.
 #[inline(never)]
 pub(crate) fn edit(sheet: &mut Sheet<'_>, draft: &Draft<'_>, old: &Plant, new: &Plant) {
-    match (picture(old), picture(new)) {
+    match (old.view(), new.view()) {
         (Some(a), Some(b)) if a != b => change(sheet, draft, a, b),
         (None, Some(b)) => add(sheet, draft, old, b),
         _ => {}
     }
-}
-
-fn picture(plant: &Plant) -> Option<&View> {
-    plant.items.iter().find_map(|i| if let PlantItem::View(v) = i { Some(v) } else { None })
 }
 
 /// Writes a first picture as the last item of its plant.

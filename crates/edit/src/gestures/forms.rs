@@ -1,34 +1,14 @@
 //! The choices of a layout section that are no places of symbols: the form of a link, how actions stand, and where the
 //! chart stands on a sheet of several.
 
-use g7_model::{ActionForm, LinkForm, PlaceAt, Placed, say};
+use g7_model::{ActionForm, LinkForm, Placed, say};
 
-use super::layout_section::{layout, point, with_layout, without_empty_layout};
+use super::layout_section::{point, set};
 use super::places::link_ends;
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
 use crate::gesture::{DrawnAs, StackedAs};
 use crate::id::{ItemId, Part};
-
-/// Puts an entry in the place of those of its kind, or takes these out. `own` tells which are of its kind.
-fn set(d: &mut Draft<'_>, chart: &str, own: impl Fn(&Placed) -> bool, entry: Option<(Placed, (i32, i32))>) {
-    let at = d.fresh();
-    let there = layout(&d.doc, chart).is_some_and(|l| l.places.iter().any(|p| own(&p.what)));
-    if entry.is_none() && !there {
-        return;
-    }
-    with_layout(d, chart, |layout| {
-        let Some((what, (x, y))) = entry else {
-            layout.places.retain(|p| !own(&p.what));
-            return;
-        };
-        match layout.places.iter_mut().find(|p| own(&p.what)) {
-            Some(there) => (there.what, there.x, there.y) = (what, x, y),
-            None => layout.places.push(PlaceAt { what, x, y, then: Vec::new(), at }),
-        }
-    });
-    without_empty_layout(d, chart);
-}
 
 /// Chooses the form in which a link is drawn; without one the layout decides.
 #[inline(never)]
@@ -38,7 +18,7 @@ pub(crate) fn link(d: &mut Draft<'_>, id: &ItemId, form: Option<DrawnAs>) -> Res
     };
     let (chart, ends) = link_ends(d, &id.chart, a, b)?;
     let form: Option<LinkForm> = form.map(DrawnAs::form);
-    let entry = form.map(|form| (Placed::LinkForm(Box::new(ends.clone()), form), (0, 0)));
+    let entry = form.map(|form| (Placed::LinkForm(Box::new(ends.clone()), form), vec![(0, 0)]));
     set(d, &chart, |p| matches!(p, Placed::LinkForm(e, _) if **e == ends), entry);
     // The page selects the end at the start where the link is broken off.
     d.select(ItemId::link(chart.as_str(), a.clone(), b.clone()));
@@ -64,7 +44,7 @@ pub(crate) fn actions(d: &mut Draft<'_>, id: &ItemId, form: Option<StackedAs>) -
     };
     // Without an entry a chart has its actions in a column.
     let form = form.filter(|form| step.is_some() || *form != ActionForm::default());
-    let entry = form.map(|form| (Placed::Actions(step.clone(), form), (0, 0)));
+    let entry = form.map(|form| (Placed::Actions(step.clone(), form), vec![(0, 0)]));
     set(d, &id.chart, |p| matches!(p, Placed::Actions(s, _) if *s == step), entry);
     if step.is_some() {
         d.select(id.clone());
@@ -79,7 +59,7 @@ pub(crate) fn sheet(d: &mut Draft<'_>, chart: Option<&str>, at: Option<[f64; 2]>
     match (chart, at.map(point).transpose()?) {
         (Some(chart), at) => {
             d.chart(chart)?;
-            set(d, chart, is_place, at.map(|at| (Placed::Sheet, at)));
+            set(d, chart, is_place, at.map(|at| (Placed::Sheet, vec![at])));
         }
         (None, None) => {
             let names: Vec<String> = d.doc.charts().map(|c| c.name.text.to_string()).collect();

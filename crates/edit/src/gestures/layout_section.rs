@@ -1,6 +1,6 @@
 //! Access to the layout section of a chart, and its unit of length.
 
-use g7_model::{Document, Item, Layout, say};
+use g7_model::{Document, Item, Layout, PlaceAt, Placed, say};
 
 use crate::change::{Refusal, refuse};
 use crate::draft::Draft;
@@ -35,6 +35,36 @@ pub(crate) fn layout<'d>(doc: &'d Document, chart: &str) -> Option<&'d Layout> {
 pub(crate) fn without_empty_layout(d: &mut Draft<'_>, chart: &str) {
     let empty = |l: &Layout| *l.chart.text == *chart && l.places.is_empty();
     d.doc.items.retain(|i| !matches!(i, Item::Layout(l) if empty(l)));
+}
+
+/// Puts an entry with its points in the place of those of its kind, or takes these out. `own` tells which are of its kind.
+pub(crate) fn set(
+    d: &mut Draft<'_>,
+    chart: &str,
+    own: impl Fn(&Placed) -> bool,
+    entry: Option<(Placed, Vec<(i32, i32)>)>,
+) {
+    let at = d.fresh();
+    let there = layout(&d.doc, chart).is_some_and(|l| l.places.iter().any(|p| own(&p.what)));
+    let first = |(what, points): (Placed, Vec<(i32, i32)>)| {
+        let (&(x, y), then) = points.split_first()?;
+        Some(PlaceAt { what, x, y, then: then.to_vec(), at })
+    };
+    let entry = entry.and_then(first);
+    if entry.is_none() && !there {
+        return;
+    }
+    with_layout(d, chart, |layout| {
+        let Some(entry) = entry else {
+            layout.places.retain(|p| !own(&p.what));
+            return;
+        };
+        match layout.places.iter_mut().find(|p| own(&p.what)) {
+            Some(there) => *there = PlaceAt { at: there.at, ..entry },
+            None => layout.places.push(entry),
+        }
+    });
+    without_empty_layout(d, chart);
 }
 
 /// Changes the layout section of a chart; if there is none, adds one at the end of the file.

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use g7_model::{Item, Name, PlaceAt, Placed, Span, say};
 
-use super::layout_section::{FARTHEST, layout, point, with_layout, without_empty_layout};
+use super::layout_section::{FARTHEST, layout, point, set, with_layout, without_empty_layout};
 use super::nodes::{Node, link, node, one_chart};
 use super::notes;
 use crate::change::{Refusal, refuse};
@@ -19,11 +19,7 @@ pub(crate) fn place(d: &mut Draft<'_>, id: &ItemId, (x, y): (i32, i32)) -> Resul
         return notes::shift(d, &id.chart, n, (x, y));
     }
     let what = named(d, id)?;
-    let at = d.fresh();
-    with_layout(d, &id.chart, |layout| match layout.places.iter_mut().find(|p| p.what == what) {
-        Some(there) => (there.x, there.y) = (x, y),
-        None => layout.places.push(PlaceAt { what, x, y, then: Vec::new(), at }),
-    });
+    set(d, &id.chart, |p| *p == what, Some((what.clone(), vec![(x, y)])));
     Ok(())
 }
 
@@ -67,20 +63,7 @@ pub(crate) fn bend(d: &mut Draft<'_>, id: &ItemId, points: &[[f64; 2]]) -> Resul
     let (chart, ends) = link_ends(d, &id.chart, a, b)?;
     let what = Placed::Link(Box::new(ends));
     let points: Vec<(i32, i32)> = points.iter().map(|p| point(*p)).collect::<Result<_, _>>()?;
-    let at = d.fresh();
-    with_layout(d, &chart, |layout| {
-        let there = layout.places.iter().position(|p| p.what == what);
-        let Some((&(x, y), then)) = points.split_first() else {
-            layout.places.retain(|p| p.what != what);
-            return;
-        };
-        let then = then.to_vec();
-        match there.and_then(|n| layout.places.get_mut(n)) {
-            Some(there) => (there.x, there.y, there.then) = (x, y, then),
-            None => layout.places.push(PlaceAt { what, x, y, then, at }),
-        }
-    });
-    without_empty_layout(d, &chart);
+    set(d, &chart, |p| *p == what, Some((what.clone(), points)));
     d.select(id.clone());
     Ok(())
 }

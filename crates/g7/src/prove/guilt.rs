@@ -10,7 +10,7 @@ const NAMES: usize = 6;
 /// The steps and transitions that break a claim at the end of a run.
 #[derive(Default)]
 pub(super) struct Guilt {
-    /// A sentence about them; empty where the claim itself says all.
+    /// A sentence that names them; empty if the claim itself names them.
     pub(super) said: Said,
     /// Their names, for the question why it is so; none for a claim of the author.
     pub(super) names: Vec<String>,

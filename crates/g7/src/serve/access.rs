@@ -166,13 +166,7 @@ impl Access {
         if used {
             held.seen = now;
         }
-        Some(Who {
-            name: held.user.clone(),
-            role: held.role,
-            from: from.to_string(),
-            session: Some(*hash),
-            guest: false,
-        })
+        Some(Who::user(held.user.clone(), held.role, from.to_string(), Some(*hash)))
     }
 
     /// Reads the sessions of the file.
@@ -309,7 +303,7 @@ impl Access {
         self.read_into(&mut all).map_err(refusal)?;
         let role = all.get(&session_hash(&secret)).map_or(Role::Viewer, |held| held.role);
         drop(all);
-        let who = Who { name: name.to_owned(), role, from: from.to_string(), session: None, guest: false };
+        let who = Who::user(name.to_owned(), role, from.to_string(), None);
         self.audit.note(&who, "login", None, &json!({ "role": role.word() }));
         Ok(secret)
     }
@@ -347,13 +341,7 @@ impl Access {
                     return Err(wrong());
                 }
             }
-            let who = Who {
-                name: name.clone(),
-                role: Role::Admin,
-                from: from.to_string(),
-                session: None,
-                guest: false,
-            };
+            let who = Who::user(name.clone(), Role::Admin, from.to_string(), None);
             access.must(&who, "user-add", &json!({ "user": name, "role": "admin", "first": true }))?;
             access.users.add(&name, Role::Admin, &password, utc_millis(), true).map_err(refusal)?;
             *lock(&access.code) = None;

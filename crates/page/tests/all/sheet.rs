@@ -84,7 +84,7 @@ fn a_chart_stands_where_it_is_put_and_the_others_stay() {
     for id in ["A/s/1", "B/s/2"] {
         assert_eq!(area(&now, id), area(&was, id));
     }
-    // Put on to another one that nobody has arranged, it takes its place, and that one gives way.
+    // This chart is put where another one stands. Nobody has arranged that one, so it gives way.
     let b = was["items"].as_array().expect("items").iter().find(|i| i["id"] == "B/s/2").expect("step 2");
     page.ok(
         json!({ "do": "edit", "file": "a.g7", "gesture": { "g": "sheet", "chart": "C", "at": b["at"] } }),

@@ -34,11 +34,15 @@ pub(crate) fn call(
         serde_json::from_str(message).map_err(|e| say!("this message means nothing: {e}", e = raw(e)))?;
     wish.judge()?;
     let edits = who.role >= Role::Engineer && !shared.folder.is_read_only();
+    let comes_or_goes = matches!(wish, Wish::Join { .. } | Wish::Leave { .. });
     let mut tables = shared.together.lock();
-    let before = tables.list();
+    // Changes of the text and of places come many times a second, and change nothing of who is where.
+    let before = comes_or_goes.then(|| tables.list());
     let answer = tables.answer(who, outbox, edits, wish)?;
     outbox.put(letter(&json!({ "id": id, "answer": { "ok": answer } })));
-    tell_if_changed(shared, &tables, &before);
+    if let Some(before) = before {
+        tell_if_changed(shared, &tables, &before);
+    }
     Ok(())
 }
 
@@ -62,7 +66,7 @@ fn tell_if_changed(shared: &Inner, tables: &Tables, before: &Value) {
     }
 }
 
-/// Tells the people at each table where the others are, as long as the server lives.
+/// Runs as long as the server: tells everyone at a file where those have gone who have moved since the last time.
 pub(crate) async fn tell_moves(shared: Shared) {
     let mut tick = tokio::time::interval(MOVES);
     tick.set_missed_tick_behavior(tokio::time::MissedTickBehavior::Delay);
